@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Compiler flags that every target of the project shares. One processor flag for all: Eigen's alignment depends on it.
+add_compile_options("$<$<CXX_COMPILER_ID:GNU,Clang>:-Wall;-Wextra;-Wshadow;-Wno-psabi>")
+if(MSML_WERROR)
+  add_compile_options(-Werror)
+endif()
+if(MSML_NATIVE)
+  add_compile_options(-march=native)
+endif()
+if(MSML_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  add_link_options(-fsanitize=address,undefined)
+endif()

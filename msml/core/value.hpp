@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The typed values that flow on the edges of the graph.
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "msml/core/image.hpp"
+#include "msml/core/mesh.hpp"
+
+namespace msml {
+
+using Integer = std::int64_t;
+
+/// A file that is handed on as it is, without being read.
+struct File {
+  std::filesystem::path path;
+};
+
+/// The states of a simulation on disk, and the last of them in memory.
+struct Series {
+  std::string pattern;                        ///< "disp_*.vtu", relative to the output folder
+  std::filesystem::path folder;               ///< the output folder
+  std::vector<double> times;                  ///< one per file
+  std::vector<std::filesystem::path> files;
+  std::shared_ptr<const Mesh> last;           ///< points deformed, field "displacement" = x - X
+};
+
+using MeshPtr = std::shared_ptr<const Mesh>;
+using SurfacePtr = std::shared_ptr<const Surface>;
+using ImagePtr = std::shared_ptr<const Image>;
+using IndexSetPtr = std::shared_ptr<const IndexSet>;
+using FieldPtr = std::shared_ptr<const Field>;
+using SeriesPtr = std::shared_ptr<const Series>;
+using ImageList = std::vector<ImagePtr>;
+
+/// monostate = no value. Large values are shared, never copied.
+using Value = std::variant<std::monostate, bool, Integer, double, std::string, std::vector<Integer>,
+                           std::vector<double>, File, MeshPtr, SurfacePtr, ImagePtr, IndexSetPtr, FieldPtr, SeriesPtr,
+                           ImageList>;
+
+/// One type per alternative of Value, in the same order.
+enum class Type : std::uint8_t {
+  nothing, boolean, integer, number, text, integers, numbers, file, mesh, surface, image, index_set, field, series,
+  images
+};
+
+/// The alternative of Value that carries a T: large values travel as shared pointers.
+template <class T> struct carried { using type = T; };
+template <> struct carried<Mesh> { using type = MeshPtr; };
+template <> struct carried<Surface> { using type = SurfacePtr; };
+template <> struct carried<Image> { using type = ImagePtr; };
+template <> struct carried<IndexSet> { using type = IndexSetPtr; };
+template <> struct carried<Field> { using type = FieldPtr; };
+template <> struct carried<Series> { using type = SeriesPtr; };
+template <class T> using carried_t = typename carried<T>::type;
+template <class T> constexpr bool is_shared = !std::is_same_v<carried_t<T>, T>;
+
+namespace detail {
+template <class T, std::size_t I = 0>
+constexpr std::size_t alternative() {
+  if constexpr (std::is_same_v<std::variant_alternative_t<I, Value>, T>) return I;
+  else return alternative<T, I + 1>();
+}
+}  // namespace detail
+
+template <class T>
+constexpr Type type_of = static_cast<Type>(detail::alternative<carried_t<T>>());
+inline Type type(const Value& value) { return static_cast<Type>(value.index()); }
+
+/// "Mesh", "IndexSet", "number", "list of numbers", …: the words used in messages, help and the schema.
+const char* name(Type type);
+
+/// True for the types that a file can hold: mesh, surface, image, images, index_set, field.
+bool is_data(Type type);
+
+/// True if a value of `from` can be used as `to` without losing anything:
+/// integer -> number -> numbers, integers -> numbers, surface -> mesh, series -> mesh (its last state),
+/// image -> images, and anything readable from a file (file -> mesh | surface | image) by its extension.
+bool converts(Type from, Type to);
+
+/// Carries out a conversion for which converts() holds, except reading a file. Throws Error where it does not hold.
+Value convert(const Value& value, Type to);
+
+/// A short description for progress lines: "41,203 tet4, 9,120 points", "120 x 120 x 120 uint8", "0.3", …
+std::string summary(const Value& value);
+
+/// Bytes held by the value (arrays only), for the memory report.
+std::size_t bytes(const Value& value);
+
+}  // namespace msml

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the solver is given, and what it gives back. Plain data: no XML, no files.
+#pragma once
+#include <functional>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "msml/core/mesh.hpp"
+
+namespace msml::fe {
+
+class Law;  // solver/materials/law.hpp
+
+/// A group of elements with one material. Units are the scene's own, consistent.
+struct Region {
+  std::string name;
+  std::shared_ptr<const Law> law;
+  double density = 1;             ///< mass per reference volume, >= 0
+  std::vector<int> elements;      ///< cell ids of tet4 or tet10 cells of Model::mesh
+};
+
+enum class Ramp { linear, step };
+
+/// Total displacement of nodes from the reference configuration, per component. With Ramp::linear the value is reached
+/// linearly from the state at the start of the step; it holds in later steps unless they say otherwise.
+struct Prescribed {
+  std::string name;
+  std::vector<int> nodes;
+  std::vector<Vec3> values;       ///< one for all, or one per node
+  bool components[3] = {true, true, true};
+  Ramp ramp = Ramp::linear;       ///< zero displacement (a fixed node) uses step
+};
+
+/// Force on each node (not shared between them), dead.
+struct NodalForce {
+  std::string name;
+  std::vector<int> nodes;
+  std::vector<Vec3> values;       ///< one for all, or one per node
+};
+
+/// A boundary face of a tetrahedron: element and local face (see msml::tet_faces).
+struct Face {
+  int element = -1;               ///< cell id
+  int local = -1;                 ///< 0..3
+};
+
+/// Pressure (positive pushes against the outward normal) or a traction vector on faces.
+struct FaceLoad {
+  std::string name;
+  std::vector<Face> faces;
+  std::vector<double> pressures;  ///< one for all or one per face; empty if a traction
+  std::vector<Vec3> tractions;    ///< force per reference area; one for all or one per face; empty if a pressure
+  bool follower = false;          ///< pressure acts on the deformed face (with its tangent)
+};
+
+/// One stage of a simulation: `count` time steps of `dt`. What acts is listed anew for each stage.
+struct Step {
+  std::string name;
+  double dt = 0.05;               ///< time, > 0
+  int count = 100;                ///< number of time steps
+  Vec3 gravity = Vec3(0, 0, -9.81);
+  std::vector<Prescribed> prescribed;
+  std::vector<NodalForce> forces;
+  std::vector<FaceLoad> face_loads;
+};
+
+enum class Integrator { static_, implicit_euler, newmark };
+enum class LinearSolver { direct, cg, automatic };
+enum class Preconditioner { none, jacobi, block_jacobi, incomplete_cholesky, automatic };
+
+struct Settings {
+  Integrator integrator = Integrator::implicit_euler;
+  LinearSolver linear_solver = LinearSolver::automatic;
+  Preconditioner preconditioner = Preconditioner::automatic;
+  double damping_mass = 0;        ///< Rayleigh alpha, 1/time, >= 0
+  double damping_stiffness = 0;   ///< Rayleigh beta, time, >= 0
+  bool lumped_mass = false;
+  int newton_iterations = 25;     ///< at most; 1 = one linear solve per step
+  double tolerance = 1e-8;        ///< residual relative to the loads
+  double linear_tolerance = 1e-10;
+  int load_steps = 1;             ///< static: the loads are applied in so many equal parts
+  bool line_search = true;
+  int threads = 1;
+};
+
+struct Model {
+  std::shared_ptr<const Mesh> mesh;  ///< nodes that belong to no listed element carry no unknowns
+  std::vector<Region> regions;       ///< disjoint; all elements of one kind: tet4 or tet10
+  std::vector<Step> steps;
+  Settings settings;
+  /// Throws Error on what cannot be solved: an inverted reference element, a static body free to move, …
+  void check() const;
+};
+
+/// The unknowns at one time. All arrays are #points x 3 of Model::mesh.
+struct State {
+  double time = 0;
+  int step = 0;                      ///< index into Model::steps
+  int increment = 0;                 ///< 0 = initial state, then 1, 2, … over all steps
+  Points displacement, velocity, acceleration;
+  Points reaction;                   ///< force of the constraint on the body; zero where free
+};
+
+/// What the equations gave at the elements of one state; one entry per mesh cell (zero for cells without unknowns).
+/// Means over the quadrature points. 6 components: xx yy zz xy yz xz.
+struct ElementResults {
+  std::vector<double> cauchy;        ///< #cells x 6
+  std::vector<double> strain;        ///< #cells x 6; the strain of the law (corotated: U - I, small: sym grad u)
+  std::vector<double> energy_density;///< #cells, per reference volume
+  std::vector<double> J;             ///< #cells, smallest det F of the element
+  std::vector<double> rotation;      ///< #cells, angle of the polar rotation in degrees, largest of the element
+};
+
+/// The check after every run, part of the answer (scene-language, section 4).
+struct Check {
+  double residual = 0;               ///< ||f_ext - f_int - M a - D v|| over free unknowns, relative to `load_scale`
+  double load_scale = 0;             ///< largest of the norms of external, internal, inertia and reaction forces
+  Vec3 sum_loads = Vec3::Zero(), sum_reactions = Vec3::Zero(), sum_inertia = Vec3::Zero(), sum_damping = Vec3::Zero();
+  double balance = 0;                ///< |loads + reactions - inertia - damping| relative to the largest of them
+  double volume = 0, volume_change = 0;  ///< reference volume; (v - V) / V
+  double mass = 0;
+  double smallest_J = std::numeric_limits<double>::infinity();
+  int smallest_J_element = -1;
+  double largest_strain = 0;         ///< largest absolute principal strain of U - I
+  double largest_rotation = 0;       ///< degrees
+  double damped_per_cycle = 0;       ///< amplitude loss of the lowest free period per cycle; 0 if static
+  double lowest_period = 0;          ///< from the smallest eigenvalue (inverse iteration); 0 if static
+};
+
+enum class Stop {
+  converged, newton_limit, diverged, inverted_element, indefinite_tangent, linear_solver_limit, singular, interrupted
+};
+const char* name(Stop stop);
+
+/// How a run ended and what it cost. Non-convergence is a result with a reason, never an exception.
+struct Outcome {
+  Stop stop = Stop::converged;
+  std::string diagnosis;             ///< step, residual history, worst element with its place, what to try; "" if converged
+  State state;                       ///< the last good state
+  Check check;                       ///< of that state
+  long unknowns = 0;
+  int newton_iterations = 0, linear_solves = 0;
+  long cg_iterations = 0;
+  double seconds_setup = 0, seconds_assembly = 0, seconds_linear = 0;
+  std::size_t matrix_bytes = 0, factor_bytes = 0;
+};
+
+/// Called with every accepted state, the initial one first. Returning false interrupts the run.
+using Observer = std::function<bool(const State&)>;
+
+/// Solves all steps. Throws Error only for a model that check() refuses.
+Outcome solve(const Model& model, const Observer& observer);
+
+/// Stresses and strains of a state.
+ElementResults element_results(const Model& model, const State& state);
+
+/// A field at cells recovered at the nodes: mean over the elements of each region around a node, weighted by volume;
+/// at a node between regions the mean of all. values: #cells x components -> #points x components.
+std::vector<double> recover_at_nodes(const Model& model, const std::vector<double>& values, int components);
+
+}  // namespace msml::fe
