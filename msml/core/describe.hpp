@@ -105,6 +105,9 @@ class Description {
   void note(std::string text) { notes_.push_back(std::move(text)); }
   /// The tag parses, but a scene that uses it is refused: "TAG is not available yet: REASON".
   void not_available_yet(std::string reason) { unavailable_ = std::move(reason); }
+  /// Output requests only: the type of the value that `${id}` stands for.
+  void produces(Type type) { produces_ = type; }
+  Type produces() const { return produces_; }
   void allow(ChildRule rule) { children_.push_back(std::move(rule)); }
 
   /// A setting. Required unless it has a fallback or is optional.
@@ -140,6 +143,7 @@ class Description {
   std::vector<std::string> notes_;
   std::vector<Slot> slots_;
   std::vector<ChildRule> children_;
+  Type produces_ = Type::nothing;
 };
 
 /// A description filled with values: one tag of a scene, checked, every attribute of its declared type.

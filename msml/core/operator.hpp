@@ -44,7 +44,10 @@ class Context {
   template <class T>
   void set(Key<T> key, std::shared_ptr<const T> value) { outputs[at(key.slot)] = std::move(value); }
   /// Sets the output in the given slot; for operators whose outputs are not known when they are written.
-  void set(int slot, Value value) { outputs[at(slot)] = std::move(value); }
+  void set(int slot, Value value) {
+    if (outputs.size() <= at(slot)) outputs.resize(at(slot) + 1);
+    outputs[at(slot)] = std::move(value);
+  }
 
   Reporter& reporter() { return reporter_; }
   const std::filesystem::path& output_folder() const { return output_folder_; }
