@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VTK's legacy files.
+#include <fmt/format.h>
+#include <vtkDataSetWriter.h>
+#include <vtkGenericDataObjectReader.h>
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataReader.h>
+#include <vtkSmartPointer.h>
+#include <vtkStructuredPoints.h>
+#include <vtkStructuredPointsReader.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkUnstructuredGridReader.h>
+
+#include "operators/formats/formats.hpp"
+#include "operators/vtk_convert.hpp"
+#include "operators/vtk_guard.hpp"
+
+namespace msml::operators {
+namespace {
+
+template <class Reader>
+vtkSmartPointer<Reader> read_all(const std::filesystem::path& path) {
+  auto reader = vtkSmartPointer<Reader>::New();
+  reader->SetFileName(path.c_str());
+  reader->ReadAllScalarsOn();
+  reader->ReadAllVectorsOn();
+  reader->ReadAllTensorsOn();
+  reader->ReadAllNormalsOn();
+  reader->ReadAllTCoordsOn();
+  reader->ReadAllColorScalarsOn();
+  reader->ReadAllFieldsOn();
+  update(*reader, "cannot be read");
+  return reader;
+}
+
+Value read_poly(const std::filesystem::path& path, Type wanted) {
+  const auto reader = read_all<vtkPolyDataReader>(path);
+  if (wanted == Type::surface) return std::make_shared<const Surface>(to_surface(*reader->GetOutput()));
+  return std::make_shared<const Mesh>(to_mesh(*reader->GetOutput()));
+}
+
+Value read(const std::filesystem::path& path, Type wanted) {
+  const vtkNew<vtkGenericDataObjectReader> probe;
+  probe->SetFileName(path.c_str());
+  const int kind = probe->ReadOutputType();
+  const bool image = wanted == Type::image || wanted == Type::images;
+  if (kind == VTK_STRUCTURED_POINTS && image)
+    return std::make_shared<const Image>(to_image(*read_all<vtkStructuredPointsReader>(path)->GetOutput()));
+  if (kind == VTK_POLY_DATA && !image) return read_poly(path, wanted);
+  if (kind == VTK_UNSTRUCTURED_GRID && !image)
+    return as_wanted(to_mesh(*read_all<vtkUnstructuredGridReader>(path)->GetOutput()), wanted);
+  if (kind == VTK_STRUCTURED_POINTS || kind == VTK_POLY_DATA || kind == VTK_UNSTRUCTURED_GRID)
+    throw Error(fmt::format("holds {}, not a {}",
+                            kind == VTK_STRUCTURED_POINTS ? "an image"
+                            : kind == VTK_POLY_DATA       ? "polygons"
+                                                          : "a grid",
+                            name(wanted)));
+  throw Error("is no VTK file that holds an unstructured grid, polygonal data or structured points");
+}
+
+vtkSmartPointer<vtkDataObject> data_of(const Value& value) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&value)) return to_vtk(**mesh);
+  if (const auto* surface = std::get_if<SurfacePtr>(&value)) return to_vtk(**surface);
+  require_upright(*std::get<ImagePtr>(value));
+  const auto data = to_vtk(*std::get<ImagePtr>(value));
+  auto points = vtkSmartPointer<vtkStructuredPoints>::New();
+  points->ShallowCopy(data);
+  return points;
+}
+
+void write(const Value& value, const std::filesystem::path& path) {
+  const vtkNew<vtkDataSetWriter> writer;
+  writer->SetInputData(data_of(value));
+  writer->SetFileName(path.c_str());
+  writer->SetFileTypeToBinary();
+  writer->SetFileVersion(vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2);  // MSML's tools and old ParaViews stop there
+  if (writer->Write() == 0) throw Error("cannot be written");
+}
+
+}  // namespace
+
+Format legacy_vtk() {
+  return {.extensions = {".vtk"},
+          .doc = "VTK legacy file: unstructured grid, polygonal data or structured points; written in binary, 4.2.",
+          .reads = {Type::mesh, Type::surface, Type::image},
+          .writes = {Type::mesh, Type::surface, Type::image},
+          .read = [](const auto& path, Type wanted) { return reading(path, [&] { return read(path, wanted); }); },
+          .write = [](const Value& value, const auto& path,
+                      const std::string&) { writing(path, [&] { write(value, path); }); }};
+}
+
+}  // namespace msml::operators

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// VTK's XML files: appended raw binary, not compressed, so that they are read and written at the speed of the disk.
+#include <vtkImageData.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLImageDataReader.h>
+#include <vtkXMLImageDataWriter.h>
+#include <vtkXMLPolyDataReader.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridReader.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+
+#include "operators/formats/formats.hpp"
+#include "operators/vtk_convert.hpp"
+#include "operators/vtk_guard.hpp"
+
+namespace msml::operators {
+namespace {
+
+template <class Reader>
+vtkSmartPointer<Reader> opened(const std::filesystem::path& path) {
+  auto reader = vtkSmartPointer<Reader>::New();
+  if (reader->CanReadFile(path.c_str()) == 0) throw Error("is not a VTK file of this kind, or is cut off");
+  reader->SetFileName(path.c_str());
+  update(*reader, "cannot be read");
+  return reader;
+}
+
+template <class Writer, class Data>
+void write(const vtkSmartPointer<Data>& data, const std::filesystem::path& path) {
+  const vtkNew<Writer> writer;
+  writer->SetInputData(data);
+  writer->SetFileName(path.c_str());
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToNone();
+  writer->SetHeaderTypeToUInt64();
+  writer->SetIdTypeToInt32();
+  if (writer->Write() == 0) throw Error("cannot be written");
+}
+
+Value read_grid(const std::filesystem::path& path, Type wanted) {
+  return as_wanted(to_mesh(*opened<vtkXMLUnstructuredGridReader>(path)->GetOutput()), wanted);
+}
+
+Value read_poly(const std::filesystem::path& path, Type wanted) {
+  const auto reader = opened<vtkXMLPolyDataReader>(path);
+  if (wanted == Type::surface) return std::make_shared<const Surface>(to_surface(*reader->GetOutput()));
+  return std::make_shared<const Mesh>(to_mesh(*reader->GetOutput()));
+}
+
+Value read_image(const std::filesystem::path& path, Type) {
+  return std::make_shared<const Image>(to_image(*opened<vtkXMLImageDataReader>(path)->GetOutput()));
+}
+
+template <class Read, class Write>
+Format format(std::string extension, std::string doc, std::vector<Type> reads, std::vector<Type> writes, Read read,
+              Write write) {
+  return {.extensions = {std::move(extension)},
+          .doc = std::move(doc),
+          .reads = std::move(reads),
+          .writes = std::move(writes),
+          .read = [read](const auto& path, Type wanted) { return reading(path, [&] { return read(path, wanted); }); },
+          .write = [write](const Value& value, const auto& path,
+                           const std::string&) { writing(path, [&] { write(value, path); }); }};
+}
+
+}  // namespace
+
+Format vtk_xml_grid() {
+  return format(".vtu", "VTK XML unstructured grid; raw binary, doubles, region ids as cell array 'region'.",
+                {Type::mesh, Type::surface}, {Type::mesh, Type::surface}, read_grid,
+                [](const Value& value, const std::filesystem::path& path) {
+                  write<vtkXMLUnstructuredGridWriter>(to_vtk(*mesh_in(value)), path);
+                });
+}
+
+Format vtk_xml_poly() {
+  return format(".vtp", "VTK XML polygonal data; raw binary, doubles.", {Type::mesh, Type::surface}, {Type::surface},
+                read_poly, [](const Value& value, const std::filesystem::path& path) {
+                  write<vtkXMLPolyDataWriter>(to_vtk(*std::get<SurfacePtr>(value)), path);
+                });
+}
+
+Format vtk_xml_image() {
+  return format(".vti", "VTK XML image; raw binary, origin, spacing and direction.", {Type::image}, {Type::image},
+                read_image, [](const Value& value, const std::filesystem::path& path) {
+                  write<vtkXMLImageDataWriter>(to_vtk(*std::get<ImagePtr>(value)), path);
+                });
+}
+
+}  // namespace msml::operators
