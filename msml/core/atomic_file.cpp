@@ -82,8 +82,8 @@ void write_whole(const std::filesystem::path& path, const std::string& text) {
 }
 
 void unlink_temporaries() noexcept {
-  // try_lock: the interrupted thread may hold the lock; the process ends right after this call.
-  const std::unique_lock lock(temporaries().mutex, std::try_to_lock);
+  // The lock is never given back: no thread can start another file in the instant before the process ends.
+  temporaries().mutex.lock();
   for (const std::string& name : temporaries().names) ::unlink(name.c_str());
 }
 

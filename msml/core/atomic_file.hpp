@@ -14,7 +14,8 @@ void write_whole(const std::filesystem::path& path, const std::function<void(con
 /// The same for a text.
 void write_whole(const std::filesystem::path& path, const std::string& text);
 
-/// Unlinks every temporary file in the making. Callable while other threads write, just before the program ends.
+/// Unlinks every temporary file in the making and lets no new one begin: to be called just before the program ends,
+/// while other threads may still write.
 void unlink_temporaries() noexcept;
 
 }  // namespace msml

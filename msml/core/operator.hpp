@@ -79,6 +79,9 @@ class Operator : public Description {
     slot.written_output = written.slot;
     add_slot(std::move(slot));
   }
+  /// Its result is what it prints: it runs even where nothing else needs its outputs.
+  void reports() { reports_ = true; }
+  bool is_report() const { return reports_; }
   void run(std::function<void(Context&)> function) { run_ = std::move(function); }
   void operator()(Context& context) const { run_(context); }
   /// Position of the first output, the value of ${task}; -1 if there is none.
@@ -86,6 +89,7 @@ class Operator : public Description {
 
  private:
   std::function<void(Context&)> run_;
+  bool reports_ = false;
 };
 
 }  // namespace msml

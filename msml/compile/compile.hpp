@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Document + Registry -> Graph.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "msml/compile/graph.hpp"
+#include "msml/core/registry.hpp"
+#include "msml/document/document.hpp"
+
+namespace msml {
+
+struct CompileOptions {
+  std::map<std::string, std::string> set;     ///< values of variables given on the command line
+  std::filesystem::path output_folder = ".";  ///< to refuse outputs that would overwrite inputs
+  bool strict = false;                        ///< warnings about old scenes are faults
+};
+
+/// The graph, or every fault of the scene, sorted by line. The graph is complete only if there are no faults.
+struct Compilation {
+  Graph graph;
+  std::vector<Fault> faults, warnings, notes;
+};
+
+/// Resolves references into edges; checks names, types, ranges and required attributes; lowers each object to one node.
+/// Reads no data file. `registry` must outlive the graph.
+Compilation compile(const Document& document, const Registry& registry, const CompileOptions& options = {});
+
+/// Reads and compiles a scene file.
+Compilation compile_file(const std::filesystem::path& scene, const Registry& registry, const CompileOptions& options = {});
+
+}  // namespace msml

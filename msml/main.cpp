@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Arguments -> command -> exit code. The only place that catches msml::Error.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "msml/commands/commands.hpp"
+#include "msml/commands/help.hpp"
+#include "msml/commands/schema.hpp"
+#include "msml/compile/grammar.hpp"
+#include "operators/registry.hpp"
+
+namespace {
+
+using msml::CompareArguments;
+using msml::Registry;
+using msml::SceneArguments;
+
+constexpr const char* footer = R"(Exit codes: 0 done, 1 comparison above tolerance, 2 bad input, 3 not converged, 4 internal fault, 130 interrupted.
+Examples:
+  msml exec scene.msml.xml -o results     run a scene, write its results to the folder results
+  msml check scene.msml.xml               find every fault of a scene without running it
+  msml help fixedConstraint               what a tag means and which attributes it takes
+  msml compare a.vtu b.vtu --tolerance 1e-6)";
+
+Registry make_registry() {
+  Registry registry;
+  msml::add_grammar(registry);
+  msml::add_operators(registry);
+  return registry;
+}
+
+/// Everything the command line may say, and which command it names.
+struct CommandLine {
+  CLI::App app{"msml: one XML scene of soft tissue in, a checked answer out.", "msml"};
+  SceneArguments scene;
+  CompareArguments compare;
+  std::string svg, name, category;
+  CLI::App *exec, *check, *show, *help, *list, *schema, *compare_files;
+
+  CommandLine() {
+    app.set_version_flag("--version", std::string("msml ") + MSML_VERSION);
+    app.require_subcommand(1);
+    app.footer(footer);
+    exec = app.add_subcommand("exec", "run a scene");
+    check = app.add_subcommand("check", "compile a scene and report every fault, run nothing");
+    show = app.add_subcommand("show", "the graph of a scene as DOT, or as SVG");
+    help = app.add_subcommand("help", "explain an operator, material, constraint or any other tag");
+    list = app.add_subcommand("list", "list operators, materials, constraints, …");
+    schema = app.add_subcommand("schema", "print the XML schema (XSD) of the language");
+    compare_files = app.add_subcommand("compare", "differences of the fields of two meshes");
+    for (CLI::App* each : {exec, check, show}) add_scene_options(each);
+    add_exec_options();
+    add_other_options();
+  }
+
+  void add_scene_options(CLI::App* command) {
+    command->add_option("scene", scene.scene, "the scene file (.msml.xml)")->required();
+    command->add_option("-o,--output", scene.output_folder, "folder for the results (default: the current one)");
+    command->add_option("--set", scene.set, "name=value: give a variable of the scene another value")->allow_extra_args(false);
+    command->add_option("--request", scene.requested, "id of a task to run although nothing needs it")->allow_extra_args(false);
+    command->add_flag("--strict", scene.strict, "warnings about old scenes are errors");
+    command->add_flag("-v,--verbose", scene.verbose, "notes too");
+    command->add_flag("-q,--quiet", scene.quiet, "warnings and errors only");
+  }
+
+  void add_exec_options() {
+    exec->add_option("-j,--jobs", scene.jobs, "nodes that run at once (default: processors)")->check(CLI::Range(1, 256));
+    exec->add_option("--threads", scene.threads, "threads inside a node (default: processors)")->check(CLI::Range(1, 256));
+    exec->add_flag("-n,--dry-run", scene.dry_run, "print the plan, run nothing");
+    exec->add_option("--log-json", scene.log_json, "write the report of the run to this file");
+  }
+
+  void add_other_options() {
+    show->add_option("--to", svg, "file to write, .dot or .svg (default: DOT to the terminal)");
+    help->add_option("name", name, "a tag, such as CGALMeshVolumeFromSurface");
+    list->add_option("category", category, "operators, materials, constraints, outputs, …");
+    compare_files->add_option("a", compare.a, "the mesh that is judged")->required();
+    compare_files->add_option("b", compare.b, "the reference")->required();
+    compare_files->add_option("--field", compare.fields, "only this field (may be repeated)")->allow_extra_args(false);
+    compare_files->add_option("--tolerance", compare.tolerance,
+                              "exit 1 if a maximum difference exceeds this share of the reference's largest value")
+        ->check(CLI::NonNegativeNumber);
+  }
+
+  int run(const Registry& registry) {
+    if (exec->parsed()) return msml::exec_command(registry, scene);
+    if (check->parsed()) return msml::check_command(registry, scene);
+    if (show->parsed()) return msml::show_command(registry, scene, svg);
+    if (compare_files->parsed()) {
+      compare.has_tolerance = compare_files->count("--tolerance") > 0;
+      return msml::compare_command(registry, compare);
+    }
+    if (help->parsed()) std::fputs((name.empty() ? app.help() : msml::help_text(registry, name)).c_str(), stdout);
+    if (list->parsed()) std::fputs(msml::list_text(registry, category).c_str(), stdout);
+    if (schema->parsed()) std::fputs(msml::schema_text(registry).c_str(), stdout);
+    return 0;
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    CommandLine line;
+    try {
+      line.app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      const int code = line.app.exit(error);
+      return code == 0 ? 0 : static_cast<int>(msml::Failure::input);
+    }
+    return line.run(make_registry());
+  } catch (const msml::Error& error) {
+    std::fprintf(stderr, "%s\n", error.str().c_str());
+    return static_cast<int>(error.failure());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "unexpected: %s\n", error.what());
+    return static_cast<int>(msml::Failure::internal);
+  }
+}

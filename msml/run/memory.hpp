@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Memory of this process, from the kernel.
+#pragma once
+#include <cstddef>
+
+namespace msml {
+
+/// Starts a new measurement of the peak. Only meaningful while one node runs.
+void reset_peak_memory();
+/// Most resident memory in bytes since the last reset (or the start); 0 where the system does not tell.
+std::size_t peak_memory();
+
+}  // namespace msml

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Carries out one node of the graph.
+#include "msml/run/node_run.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <mutex>
+
+#include "msml/core/atomic_file.hpp"
+
+namespace msml {
+namespace {
+
+namespace fs = std::filesystem;
+
+class NodeReporter : public Reporter {
+ public:
+  NodeReporter(int node, Watcher& watcher, NodeReport& report) : node_(node), watcher_(watcher), report_(report) {}
+  void progress(double share, const std::string& words) override { watcher_.progress(node_, share, words); }
+  void note(const std::string& text) override { watcher_.note(node_, text); }
+  void print(const std::string& text) override { watcher_.print(node_, text); }
+  void warn(const std::string& text) override {
+    {
+      const std::lock_guard lock(mutex_);
+      report_.warnings.push_back(text);
+    }
+    watcher_.warning(node_, text);
+  }
+  void record(const std::string& name, const std::string& json) override {
+    const std::lock_guard lock(mutex_);
+    report_.facts[name] = json;
+  }
+
+ private:
+  int node_;
+  Watcher& watcher_;
+  NodeReport& report_;
+  std::mutex mutex_;
+};
+
+/// Data that later nodes and files may rely on: sizes fit, all numbers finite.
+void check_output(const Value& value) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&value)) (*mesh)->check();
+  if (const auto* surface = std::get_if<SurfacePtr>(&value)) (*surface)->check();
+  if (const auto* image = std::get_if<ImagePtr>(&value)) (*image)->check();
+  if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number))
+    throw Error("the result is not a finite number");
+}
+
+std::string as_text(const Value& value) {
+  if (const auto* words = std::get_if<std::string>(&value)) return *words;
+  std::string text;
+  if (const auto* list = std::get_if<std::vector<double>>(&value))
+    for (const double number : *list) text += fmt::format("{}\n", number);
+  else if (const auto* integers = std::get_if<std::vector<Integer>>(&value))
+    for (const Integer number : *integers) text += fmt::format("{}\n", number);
+  else
+    text = std::get<std::string>(convert(value, Type::text)) + "\n";
+  return text;
+}
+
+void write_target(const Value& value, const fs::path& path, const Registry& registry) {
+  if (type(value) == Type::nothing) return;
+  if (const auto* file = std::get_if<File>(&value)) {
+    if (!fs::exists(file->path)) throw Error("no such file: " + file->path.string());
+    write_whole(path, [&](const fs::path& temporary) {
+      fs::copy_file(file->path, temporary, fs::copy_options::overwrite_existing);
+    });
+  } else if (!is_data(type(value))) {
+    write_whole(path, as_text(value));
+  } else {
+    registry.write(value, path);
+  }
+}
+
+std::string with_star(std::string text, const std::string& star) {
+  for (std::size_t i = 0; (i = text.find('*', i)) != std::string::npos; i += star.size()) text.replace(i, 1, star);
+  return text;
+}
+
+class NodeRun {
+ public:
+  NodeRun(const Graph& graph, int index, const Results& results, const Registry& registry, const RunOptions& options,
+          Watcher& watcher, NodeReport& report)
+      : graph_(graph), node_(graph.nodes[static_cast<std::size_t>(index)]), index_(index), results_(results),
+        registry_(registry), options_(options), watcher_(watcher), report_(report) {}
+
+  std::vector<Value> run() {
+    if (node_.kind == NodeKind::file) return {read_file()};
+    return node_.each_state >= 0 ? run_each_state() : run_once(record(), "");
+  }
+
+ private:
+  Record record() const { return gather(graph_, node_.args, results_, options_.output_folder); }
+
+  Value read_file() {
+    Value value = registry_.read(node_.file, node_.file_type);
+    const auto* mesh = std::get_if<MeshPtr>(&value);
+    const bool solid = mesh && ((*mesh)->has(CellKind::tet4) || (*mesh)->has(CellKind::tet10));
+    const bool declared_surface = node_.declared == "TriangularSurface" || node_.declared == "SurfaceMesh";
+    if (solid && declared_surface) {
+      const std::string text = fmt::format("{} is declared as {}, but holds {}; the file wins",
+                                           node_.file.filename().string(), node_.declared, (*mesh)->summary());
+      report_.warnings.push_back(text);
+      watcher_.warning(index_, text);
+    }
+    report_.summary = summary(value);
+    return value;
+  }
+
+  std::vector<Value> run_once(const Record& args, const std::string& star) {
+    NodeReporter reporter(index_, watcher_, report_);
+    Context context(args, reporter, options_.output_folder, options_.threads);
+    (*node_.op)(context);
+    for (const Value& value : context.outputs) check_output(value);
+    for (const Target& target : node_.targets) {
+      const fs::path path = options_.output_folder / with_star(target.file.string(), star);
+      write_target(context.outputs[static_cast<std::size_t>(target.output)], path, registry_);
+      report_.files.push_back(path);
+    }
+    if (const int first = node_.kind == NodeKind::simulation ? 0 : node_.op->first_output(); first >= 0)
+      report_.summary = summary(context.outputs[static_cast<std::size_t>(first)]);
+    return std::move(context.outputs);
+  }
+
+  /// The operator once for each state of the series; the outputs are those of the last.
+  std::vector<Value> run_each_state() {
+    const auto slot = static_cast<std::size_t>(node_.each_state);
+    const Edge edge = std::get<Edge>(node_.args.sources[slot]);
+    const auto series = std::get<SeriesPtr>(results_[static_cast<std::size_t>(edge.node)][static_cast<std::size_t>(edge.slot)]);
+    std::vector<Value> outputs;
+    Record args = record();
+    for (std::size_t i = 0; i < series->files.size(); ++i) {
+      args.values[slot] = registry_.read(series->files[i], Type::mesh);
+      outputs = run_once(args, fmt::format("{:04}", i));
+      watcher_.progress(index_, static_cast<double>(i + 1) / static_cast<double>(series->files.size()), "state by state");
+    }
+    return outputs;
+  }
+
+  const Graph& graph_;
+  const Node& node_;
+  int index_;
+  const Results& results_;
+  const Registry& registry_;
+  const RunOptions& options_;
+  Watcher& watcher_;
+  NodeReport& report_;
+};
+
+}  // namespace
+
+std::vector<Value> run_node(const Graph& graph, int index, const Results& results, const Registry& registry,
+                            const RunOptions& options, Watcher& watcher, NodeReport& report) {
+  const Node& node = graph.nodes[static_cast<std::size_t>(index)];
+  const auto named = [&](const std::string& what) { return fmt::format("{} '{}': {}", node.tag(), node.id, what); };
+  try {
+    return NodeRun(graph, index, results, registry, options, watcher, report).run();
+  } catch (const Error& error) {
+    throw Error(named(error.what()), error.where().file.empty() ? node.where : error.where(), error.failure());
+  } catch (const std::bad_alloc&) {
+    throw Error(named("not enough memory"), node.where, Failure::internal);
+  } catch (const std::exception& error) {
+    throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
+  }
+}
+
+}  // namespace msml

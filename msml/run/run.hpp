@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs the planned nodes of a graph, independent ones in parallel.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "msml/compile/graph.hpp"
+#include "msml/core/registry.hpp"
+#include "msml/plan/plan.hpp"
+
+namespace msml {
+
+enum class NodeStatus : std::uint8_t { waiting, done, failed };
+
+/// What is known of a node after the run.
+struct NodeReport {
+  NodeStatus status = NodeStatus::waiting;
+  double seconds = 0;
+  std::size_t output_bytes = 0;      ///< held by its values
+  std::size_t peak_bytes = 0;        ///< most memory of the whole process while it ran
+  std::string summary;               ///< of its first output
+  std::vector<std::string> warnings;
+  std::map<std::string, std::string> facts;  ///< JSON texts by name, such as "check"
+  std::vector<std::filesystem::path> files;  ///< written
+};
+
+/// Told what happens while nodes run; calls come from any thread.
+class Watcher {
+ public:
+  virtual ~Watcher() = default;
+  virtual void started(int node) = 0;
+  virtual void progress(int node, double share, const std::string& words) = 0;
+  virtual void finished(int node, const NodeReport& report) = 0;
+  virtual void note(int node, const std::string& text) = 0;
+  virtual void warning(int node, const std::string& text) = 0;
+  virtual void print(int node, const std::string& text) = 0;
+};
+
+struct RunOptions {
+  std::filesystem::path output_folder = ".";
+  int jobs = 1;       ///< nodes at once
+  int threads = 1;    ///< threads inside a node
+};
+
+/// How a run ended: one report per node of the graph, and the first error if a node failed.
+struct RunResult {
+  std::vector<NodeReport> nodes;
+  std::vector<Error> errors;  ///< at most one per failed node
+  double seconds = 0;
+};
+
+RunResult run(const Graph& graph, const Plan& plan, const Registry& registry, const RunOptions& options,
+              Watcher& watcher);
+
+}  // namespace msml
