@@ -38,9 +38,12 @@ void apply_settings(Work& work) {
 
 void declare_task(Work& work, const Tag& tag) {
   for (const Tag& inner : tag.children) declare_task(work, inner);
-  const auto* op = dynamic_cast<const Operator*>(tag.description);
-  if (!op) return;
   const Attribute* id = tag.element->find("id");
+  const auto* op = dynamic_cast<const Operator*>(tag.description);
+  if (!op) {  // not available yet, as reported; its name is declared so that its users add no faults of their own
+    if (id) declare(work, trimmed(id->value), {.kind = Named::Kind::task, .where = id->where});
+    return;
+  }
   Task task{.tag = &tag, .id = id ? trimmed(id->value) : "", .node = static_cast<int>(work.out.graph.nodes.size())};
   if (id && !usable_name(task.id))
     work.fault(id->where, fmt::format("id = '{}' is not a name: no blanks, dots, braces or $", quoted_value(task.id)));

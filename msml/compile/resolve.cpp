@@ -81,6 +81,7 @@ Source resolve_reference(Work& work, const Binding& user, const Slot& slot, cons
     if (!part.empty()) work.fault(where, fmt::format("${{{}}}: the output {} has no parts", reference, name));
     return connect(work, user, slot, {named.nodes.front(), named.slot}, where, reference);
   }
+  if (named.nodes.empty()) return Value{};
   const int output = output_slot(work, work.node(named.nodes.front()), part, reference, where);
   if (output < 0) return Value{};
   std::vector<Edge> edges;
