@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One object of a scene: model, run, results on disk, check.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "msml/core/atomic_file.hpp"
+#include "msml/core/operator.hpp"
+#include "operators/simulate/check_report.hpp"
+#include "operators/simulate/series_writer.hpp"
+
+namespace msml::operators {
+
+Operator simulate();
+
+namespace {
+
+using simulation::SeriesWriter;
+using simulation::Simulation;
+using simulation::StateFields;
+
+/// Increments of a step: time steps, or the parts that the loads of a static step come in.
+int increments(const fe::Model& model, const fe::Step& step) {
+  return model.settings.integrator == fe::Integrator::static_ ? model.settings.load_steps : step.count;
+}
+
+void show_progress(const fe::Model& model, const fe::State& state, Reporter& reporter) {
+  int before = 0, all = 0;
+  for (std::size_t s = 0; s < model.steps.size(); ++s) {
+    if (static_cast<int>(s) < state.step) before += increments(model, model.steps[s]);
+    all += increments(model, model.steps[s]);
+  }
+  const fe::Step& step = model.steps[static_cast<std::size_t>(state.step)];
+  reporter.progress(static_cast<double>(state.increment) / std::max(1, all),
+                    fmt::format("step '{}' {}/{}  t = {:.6g}", step.name, state.increment - before,
+                                increments(model, step), state.time));
+}
+
+fe::Outcome run(const Simulation& simulation, std::vector<SeriesWriter>& writers, Reporter& reporter) {
+  return fe::solve(simulation.model, [&](const fe::State& state) {
+    StateFields fields(simulation.model, simulation.body, state);
+    for (SeriesWriter& writer : writers)
+      if (writer.wants(state)) writer.write(state, fields);
+    show_progress(simulation.model, state, reporter);
+    return true;
+  });
+}
+
+void finish(const Simulation& simulation, const fe::Outcome& outcome, std::vector<SeriesWriter>& writers,
+            Reporter& reporter) {
+  StateFields fields(simulation.model, simulation.body, outcome.state);
+  for (SeriesWriter& writer : writers) writer.finish(outcome.state, fields);
+  const simulation::WorstShape worst = simulation::worst_shape(simulation.body);
+  const auto warnings = simulation::check_warnings(simulation, outcome, worst);
+  const std::string settings = simulation::settings_json(simulation);
+  const std::string check = simulation::check_json(simulation, outcome, worst, warnings);
+  reporter.print(simulation::check_text(simulation, outcome, worst));
+  for (const std::string& warning : warnings) reporter.warn(warning);
+  reporter.record("settings", settings);
+  reporter.record("check", check);
+  for (const SeriesWriter& writer : writers)
+    write_whole(writer.folder() / (writer.request().id + ".json"),
+                simulation::report_json(simulation, settings, check));
+}
+
+void simulate_object(Context& context) {
+  const Simulation simulation = simulation::build_model(context.args(), context.reporter(), context.threads());
+  std::vector<SeriesWriter> writers;
+  for (const simulation::OutputRequest& request : simulation.outputs)
+    writers.emplace_back(simulation, request, context.output_folder());
+  const fe::Outcome outcome = run(simulation, writers, context.reporter());
+  finish(simulation, outcome, writers, context.reporter());
+  if (outcome.stop != fe::Stop::converged)
+    throw Error(outcome.diagnosis, simulation.where,
+                outcome.stop == fe::Stop::interrupted ? Failure::interrupted : Failure::not_converged);
+  for (std::size_t i = 0; i < writers.size(); ++i)
+    context.set(static_cast<int>(i), std::make_shared<const Series>(writers[i].series()));
+}
+
+}  // namespace
+
+Operator simulate() {
+  Operator op("Simulate", "Computes the deformation of an object of the scene and writes the results it asks for.");
+  op.note("The compiler makes one of each <object>; it is not written in a workflow.");
+  op.allow({"object", 1, 1});
+  op.allow({"solver", 1, 1});
+  op.allow({"simulation", 1, 1});
+  op.run(simulate_object);
+  return op;
+}
+
+}  // namespace msml::operators

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The record of a simulation turned into the solver's model.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "operators/simulate/body.hpp"
+#include "operators/simulate/settings.hpp"
+
+namespace msml::simulation {
+
+/// All that a run needs.
+struct Simulation {
+  std::string name;  ///< id of the object, or "object"
+  Location where;    ///< of the object
+  Body body;
+  fe::Model model;
+  std::vector<OutputRequest> outputs;  ///< in document order
+};
+
+/// Builds the model from the record of the operator: `object`, `solver` and `simulation` below it. What old scenes may
+/// do and new ones should not is warned of; what has no meaning throws Error at its tag's place. `threads` is used
+/// where the solver tag says nothing.
+Simulation build_model(const Record& args, Reporter& reporter, int threads);
+
+/// The regions of a body: each element belongs to the last region that claims it; a single region extends to the whole
+/// body; with several, elements that none claims are an Error that counts and locates them. Overlaps and regions
+/// without elements are warned of.
+std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
+
+/// Adds the conditions under `root` to the steps they act in: forStep of the tag, else of the constraint around it,
+/// else every step. A name that is no step is warned of.
+void add_conditions(const Record& root, const Body& body, Reporter& reporter, std::vector<fe::Step>& steps);
+
+}  // namespace msml::simulation

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The check after a run as text and as JSON.
+#include "operators/simulate/check_report.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "operators/simulate/records.hpp"
+
+namespace msml::simulation {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
+Json vector(const Vec3& v) { return Json::array({number(v[0]), number(v[1]), number(v[2])}); }
+
+const char* name(fe::Integrator integrator) {
+  switch (integrator) {
+    case fe::Integrator::static_:
+      return "static";
+    case fe::Integrator::implicit_euler:
+      return "dynamicImplicitEuler";
+    default:
+      return "Newmark";
+  }
+}
+
+const char* name(fe::LinearSolver solver) {
+  switch (solver) {
+    case fe::LinearSolver::direct:
+      return "direct";
+    case fe::LinearSolver::cg:
+      return "CG";
+    default:
+      return "auto";
+  }
+}
+
+const char* name(fe::Preconditioner preconditioner) {
+  switch (preconditioner) {
+    case fe::Preconditioner::none:
+      return "none";
+    case fe::Preconditioner::jacobi:
+      return "jacobi";
+    case fe::Preconditioner::block_jacobi:
+      return "blockJacobi";
+    case fe::Preconditioner::incomplete_cholesky:
+      return "incompleteCholesky";
+    default:
+      return "auto";
+  }
+}
+
+std::string line(const std::string& what, const std::string& value) { return fmt::format("  {:<24}{}\n", what, value); }
+
+std::string element_at(const Simulation& simulation, int id) {
+  return id < 0 ? std::string() : fmt::format(" (element {} at {})", id, place(centroid(*simulation.body.mesh, id)));
+}
+
+Json steps_json(const Simulation& simulation) {
+  Json steps = Json::array();
+  for (const fe::Step& step : simulation.model.steps)
+    steps.push_back(
+        {{"name", step.name}, {"dt", number(step.dt)}, {"iterations", step.count}, {"gravity", vector(step.gravity)}});
+  return steps;
+}
+
+}  // namespace
+
+std::string check_text(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst) {
+  const fe::Check& check = outcome.check;
+  std::string text = fmt::format("check of '{}' at t = {:.6g}\n", simulation.name, outcome.state.time);
+  text += line("residual", fmt::format("{:.2e} of {:.4g}, the largest force", check.residual, check.load_scale));
+  text += line("sum of loads", place(check.sum_loads));
+  text += line("sum of reactions", place(check.sum_reactions));
+  if (simulation.model.settings.integrator != fe::Integrator::static_) {
+    text += line("sum of inertia", place(check.sum_inertia));
+    text += line("sum of damping", place(check.sum_damping));
+  }
+  text += line("balance of these", fmt::format("{:.2e}", check.balance));
+  text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));
+  text += line("mass", fmt::format("{:.6g}", check.mass));
+  text +=
+      line("smallest J", fmt::format("{:.4g}{}", check.smallest_J, element_at(simulation, check.smallest_J_element)));
+  text += line("largest strain", fmt::format("{:.3g}", check.largest_strain));
+  text += line("largest rotation", fmt::format("{:.3g} degrees", check.largest_rotation));
+  text += line("smallest dihedral angle",
+               fmt::format("{:.3g} degrees{}", worst.smallest_angle, element_at(simulation, worst.angle_element)));
+  text += line("smallest radius ratio",
+               fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
+  if (check.lowest_period > 0)
+    text += line("lowest period", fmt::format("{:.4g}, damped by {:.2g} % a cycle by the time step",
+                                              check.lowest_period, 100 * check.damped_per_cycle));
+  text += line("unknowns", with_commas(outcome.unknowns));
+  text += line("solves", fmt::format("{} of Newton, {} linear", outcome.newton_iterations, outcome.linear_solves));
+  return text;
+}
+
+std::string check_json(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst,
+                       const std::vector<std::string>& warnings) {
+  const fe::Check& check = outcome.check;
+  const Json json{
+      {"object", simulation.name},
+      {"ended", fe::name(outcome.stop)},
+      {"diagnosis", outcome.diagnosis},
+      {"time", number(outcome.state.time)},
+      {"residual", number(check.residual)},
+      {"loadScale", number(check.load_scale)},
+      {"sumOfLoads", vector(check.sum_loads)},
+      {"sumOfReactions", vector(check.sum_reactions)},
+      {"sumOfInertia", vector(check.sum_inertia)},
+      {"sumOfDamping", vector(check.sum_damping)},
+      {"balance", number(check.balance)},
+      {"volume", number(check.volume)},
+      {"volumeChange", number(check.volume_change)},
+      {"mass", number(check.mass)},
+      {"smallestJ", {{"value", number(check.smallest_J)}, {"element", check.smallest_J_element}}},
+      {"largestStrain", number(check.largest_strain)},
+      {"largestRotationDegrees", number(check.largest_rotation)},
+      {"smallestDihedralAngleDegrees", {{"value", number(worst.smallest_angle)}, {"element", worst.angle_element}}},
+      {"smallestRadiusRatio", {{"value", number(worst.radius_ratio)}, {"element", worst.ratio_element}}},
+      {"lowestPeriod", number(check.lowest_period)},
+      {"dampedPerCycle", number(check.damped_per_cycle)},
+      {"unknowns", outcome.unknowns},
+      {"newtonIterations", outcome.newton_iterations},
+      {"linearSolves", outcome.linear_solves},
+      {"cgIterations", outcome.cg_iterations},
+      {"seconds",
+       {{"setup", number(outcome.seconds_setup)},
+        {"assembly", number(outcome.seconds_assembly)},
+        {"linear", number(outcome.seconds_linear)}}},
+      {"bytes", {{"matrix", outcome.matrix_bytes}, {"factor", outcome.factor_bytes}}},
+      {"warnings", warnings}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string settings_json(const Simulation& simulation) {
+  const fe::Settings& settings = simulation.model.settings;
+  const Json json{{"versions",
+                   {{"msml", MSML_VERSION},
+                    {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+                    {"compiler", __VERSION__}}},
+                  {"mesh", simulation.body.mesh->summary()},
+                  {"elements", msml::name(simulation.body.kind)},
+                  {"timeIntegration", name(settings.integrator)},
+                  {"linearSolver", name(settings.linear_solver)},
+                  {"preconditioner", name(settings.preconditioner)},
+                  {"dampingRayleighRatioMass", number(settings.damping_mass)},
+                  {"dampingRayleighRatioStiffness", number(settings.damping_stiffness)},
+                  {"mass", settings.lumped_mass ? "lumped" : "full"},
+                  {"newtonIterations", settings.newton_iterations},
+                  {"tolerance", number(settings.tolerance)},
+                  {"linearTolerance", number(settings.linear_tolerance)},
+                  {"lineSearch", settings.line_search},
+                  {"loadSteps", settings.load_steps},
+                  {"threads", settings.threads},
+                  {"steps", steps_json(simulation)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string report_json(const Simulation& simulation, const std::string& settings, const std::string& check) {
+  const Json json{{"object", simulation.name}, {"settings", Json::parse(settings)}, {"check", Json::parse(check)}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace msml::simulation

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces on nodes.
+#include <fmt/format.h>
+
+#include "operators/simulate/conditions/condition.hpp"
+#include "operators/simulate/records.hpp"
+
+namespace msml::simulation {
+
+ConditionFactory force_constraint() {
+  ConditionFactory tag("forceConstraint", "constraint", "A force on every node, which keeps its direction.");
+  add_common(tag, "the nodes; or faces or elements, whose nodes are meant");
+  const auto force = tag.parameter<std::vector<double>>(
+      "force", {.unit = "force", .multiple_of = 3, .doc = "3 numbers, on every node the same, or 3 for each node"});
+  tag.note("The force acts on every node in full; it is not shared between them. For a load by area: surfaceTraction.");
+  tag.build([=](const Record& record) -> ConditionBuilder {
+    return [=, &record](const Body& body, Reporter& reporter) -> Condition {
+      const auto selection = select_nodes(record, body, reporter);
+      const auto lost = static_cast<std::size_t>(selection.listed) - selection.nodes.size();
+      if (!selection.positions.empty() && lost > 0)
+        reporter.warn(
+            fmt::format("{}: no force acts on {} of the {} in indices, which belong to no element; name nodes of "
+                        "the body",
+                        located(record), with_commas(static_cast<long long>(lost)), counted(selection.listed, "node")));
+      return {fe::NodalForce{.name = label(record),
+                             .nodes = selection.nodes,
+                             .values = per_node(record, record[force], selection, "force")}};
+    };
+  });
+  return tag;
+}
+
+}  // namespace msml::simulation

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Pressure on the faces of the body that coincide with triangles of a separate surface.
+#include "operators/simulate/conditions/condition.hpp"
+#include "operators/simulate/records.hpp"
+
+namespace msml::simulation {
+
+ConditionFactory surface_pressure_on_mesh() {
+  ConditionFactory tag("surfacePressureOnMesh", "constraint",
+                       "Pressure on the boundary faces that lie on triangles of a separate surface mesh.");
+  const auto mesh = tag.input<Mesh>("mesh", "the surface: its triangles are matched with the faces by place");
+  add_common(tag, "triangle cells of that surface, or its nodes", Indexed::faces);
+  const auto pressure = tag.parameter<std::vector<double>>(
+      "pressure",
+      {.unit = "stress", .doc = "one number, one per face, or three: a traction vector per reference area"});
+  const auto pulse = tag.parameter<std::string>("pulse", {.optional = true, .doc = "not available yet"});
+  const auto follower = tag.parameter<bool>("follower", {.optional = true, .doc = "as in surfacePressure"});
+  tag.build([=](const Record& record) -> ConditionBuilder {
+    if (record.has(pulse)) refuse(record, "pulse is not available yet: a pressure is constant in its step");
+    return [=, &record](const Body& body, Reporter&) -> Condition {
+      const bool follow = follows(record, follower, record[pressure], body);
+      return {face_load(record, record[pressure], select_faces_on(record, body, record[mesh]), "pressure", follow)};
+    };
+  });
+  return tag;
+}
+
+}  // namespace msml::simulation

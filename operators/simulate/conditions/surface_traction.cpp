@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A traction vector on boundary faces.
+#include "operators/simulate/conditions/condition.hpp"
+
+namespace msml::simulation {
+
+ConditionFactory surface_traction() {
+  ConditionFactory tag("surfaceTraction", "constraint",
+                       "Force per reference area on boundary faces, which keeps its direction.");
+  add_common(tag, "triangle cells of the mesh, or nodes: then the boundary faces with all corners among them");
+  const auto traction = tag.parameter<std::vector<double>>(
+      "traction", {.unit = "stress", .counts = {3}, .doc = "the vector, on every face the same"});
+  tag.build([=](const Record& record) -> ConditionBuilder {
+    return [=, &record](const Body& body, Reporter&) -> Condition {
+      return {face_load(record, record[traction], select_faces(record, body), "traction", false)};
+    };
+  });
+  return tag;
+}
+
+}  // namespace msml::simulation

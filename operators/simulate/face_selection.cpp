@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Triangles and nodes turned into boundary faces of a body.
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "operators/simulate/records.hpp"
+#include "operators/simulate/selection.hpp"
+
+namespace msml::simulation {
+namespace {
+
+bool is_triangle(CellKind kind) { return kind == CellKind::tri3 || kind == CellKind::tri6; }
+
+/// Matches triangles with faces of a body, by node ids first where they index the body's points, then by place.
+class Matcher {
+ public:
+  Matcher(const Record& record, const Body& body, const Mesh& triangles, bool shares_points)
+      : record_(record), body_(body), triangles_(triangles), shares_points_(shares_points), table_(body) {}
+
+  std::vector<fe::Face> match(const std::vector<int>& cells) {
+    std::vector<fe::Face> faces;
+    for (const int cell : cells) {
+      const fe::Face face = match(cell);
+      if (face.element < 0) continue;
+      const auto [earlier, fresh] = taken_.try_emplace({face.element, face.local}, cell);
+      if (!fresh)
+        refuse(record_, fmt::format("cells {} and {} in indices are the same face of the body, at {}", earlier->second,
+                                    cell, place(centroid(triangles_, cell))));
+      faces.push_back(face);
+    }
+    report(inside_, static_cast<int>(cells.size()), "lie between two elements, not on the boundary");
+    report(unmatched_, static_cast<int>(cells.size()), "match no face of an element");
+    return faces;
+  }
+
+ private:
+  fe::Face match(int cell) {
+    const int* nodes = triangles_.cell(cell);
+    const std::array<int, 3> corners{nodes[0], nodes[1], nodes[2]};
+    if (shares_points_) {
+      if (const fe::Face face = table_.boundary(corners); face.element >= 0) return face;
+      if (table_.inside(corners)) return inside_.push_back(cell), fe::Face{};
+    }
+    if (!places_) places_.emplace(body_);
+    std::array<std::vector<int>, 3> candidates;
+    for (std::size_t i = 0; i < 3; ++i) candidates[i] = places_->at(triangles_.points.row(corners[i]).transpose());
+    bool between = false;
+    for (const int a : candidates[0])
+      for (const int b : candidates[1])
+        for (const int c : candidates[2]) {
+          if (const fe::Face face = table_.boundary({a, b, c}); face.element >= 0) return face;
+          between = between || table_.inside({a, b, c});
+        }
+    (between ? inside_ : unmatched_).push_back(cell);
+    return {};
+  }
+
+  void report(const std::vector<int>& cells, int all, const char* what) const {
+    if (cells.empty()) return;
+    refuse(record_, fmt::format("{} of the {} in indices {}; the first is cell {} at {}",
+                                with_commas(static_cast<int>(cells.size())), counted(all, "face"), what, cells.front(),
+                                place(centroid(triangles_, cells.front()))));
+  }
+
+  const Record& record_;
+  const Body& body_;
+  const Mesh& triangles_;
+  bool shares_points_;
+  FaceTable table_;
+  std::optional<PlaceTable> places_;
+  std::vector<int> inside_, unmatched_;
+  std::map<std::pair<int, int>, int> taken_;  ///< face -> the cell that named it
+};
+
+void check_triangles(const Record& record, const IndexSet& set, const Mesh& mesh) {
+  for (const int id : set.ids) {
+    const CellKind kind = mesh.kinds[static_cast<std::size_t>(id)];
+    if (!is_triangle(kind))
+      refuse(record, fmt::format("indices names cell {}, which is a {}; triangle cells are wanted, for example from "
+                                 "ComputeIndicesFromBoxROI with select=\"surfaceElements\"",
+                                 id, name(kind)));
+  }
+}
+
+void refuse_empty(const Record& record, const Body& body) {
+  refuse(record, fmt::format("indices is empty; the body spans {}", bounds(body)));
+}
+
+std::vector<fe::Face> faces_between(const IndexSet& set, const Body& body) {
+  std::vector<bool> in(body.solid.size(), false);
+  for (const int id : set.ids) in[static_cast<std::size_t>(id)] = true;
+  std::vector<fe::Face> faces;
+  for (const fe::Face& face : FaceTable(body).boundary_faces()) {
+    const auto nodes = face_nodes(*body.mesh, face);
+    if (std::all_of(nodes.begin(), nodes.begin() + 3, [&](int node) { return in[static_cast<std::size_t>(node)]; }))
+      faces.push_back(face);
+  }
+  return faces;
+}
+
+}  // namespace
+
+FaceSelection select_faces(const Record& record, const Body& body) {
+  const IndexSet& set = indices_of(record);
+  check_indices(record, set, *body.mesh);
+  if (set.ids.empty()) refuse_empty(record, body);
+  if (set.kind == Indexed::nodes) {
+    FaceSelection selection{faces_between(set, body), false};
+    if (selection.faces.empty())
+      refuse(record, fmt::format("no boundary face has all its corners among the {} in indices; the body spans {}",
+                                 counted(static_cast<int>(set.ids.size()), "node"), bounds(body)));
+    return selection;
+  }
+  check_triangles(record, set, *body.mesh);
+  return {Matcher(record, body, *body.mesh, true).match(set.ids), true};
+}
+
+FaceSelection select_faces_on(const Record& record, const Body& body, const Mesh& surface) {
+  const IndexSet& set = indices_of(record);
+  check_indices(record, set, surface);
+  if (set.ids.empty()) refuse_empty(record, body);
+  std::vector<int> cells = set.ids;
+  if (set.kind == Indexed::nodes) {
+    std::vector<bool> in(static_cast<std::size_t>(surface.point_count()), false);
+    for (const int id : set.ids) in[static_cast<std::size_t>(id)] = true;
+    cells.clear();
+    for (int c = 0; c < surface.cell_count(); ++c) {
+      const int* nodes = surface.cell(c);
+      if (is_triangle(surface.kinds[static_cast<std::size_t>(c)]) &&
+          std::all_of(nodes, nodes + 3, [&](int node) { return in[static_cast<std::size_t>(node)]; }))
+        cells.push_back(c);
+    }
+    if (cells.empty()) refuse(record, "no triangle of mesh has all its corners among the nodes in indices");
+  } else {
+    check_triangles(record, set, surface);
+  }
+  return {Matcher(record, body, surface, false).match(cells), set.kind != Indexed::nodes};
+}
+
+}  // namespace msml::simulation

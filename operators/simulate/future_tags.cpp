@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tags that the language knows and the program does not carry out yet.
+#include "operators/simulate/settings.hpp"
+
+namespace msml::simulation {
+namespace {
+
+struct Attribute {
+  const char* name;
+  Type type;
+  const char* doc;
+};
+
+void add(Description& tag, const Attribute& attribute) {
+  switch (attribute.type) {
+    case Type::number:
+      tag.parameter(attribute.name, {.optional = true, .doc = attribute.doc});
+      return;
+    case Type::numbers:
+      tag.parameter<std::vector<double>>(attribute.name, {.optional = true, .doc = attribute.doc});
+      return;
+    case Type::integer:
+      tag.parameter<Integer>(attribute.name, {.optional = true, .doc = attribute.doc});
+      return;
+    case Type::boolean:
+      tag.parameter<bool>(attribute.name, {.optional = true, .doc = attribute.doc});
+      return;
+    case Type::mesh:
+      tag.input<Mesh>(attribute.name, attribute.doc, true);
+      return;
+    case Type::index_set:
+      tag.input<IndexSet>(attribute.name, attribute.doc, true);
+      return;
+    default:
+      tag.parameter<std::string>(attribute.name, {.optional = true, .doc = attribute.doc});
+  }
+}
+
+Description future(const char* tag, const char* category, const char* doc, const char* instead,
+                   const std::vector<Attribute>& attributes) {
+  Description description(tag, category, doc);
+  description.not_available_yet(instead);
+  for (const Attribute& attribute : attributes) add(description, attribute);
+  return description;
+}
+
+void add_meshes(std::vector<Description>& tags) {
+  const std::vector<Attribute> attributes{{"mesh", Type::mesh, "the mesh"},
+                                          {"formulation", Type::text, "how the element is computed"},
+                                          {"plane", Type::text, "strain or stress"},
+                                          {"thickness", Type::number, "of a plane body"}};
+  const char* solids = "bodies are meshes of linearTet or quadraticTet";
+  tags.push_back(future("triangularTet", "mesh", "MSML's name of a body of triangles.", solids, attributes));
+  tags.push_back(future("linearTriangle", "mesh", "Linear triangles in the plane.", solids, attributes));
+  tags.push_back(future("quadraticTriangle", "mesh", "Quadratic triangles in the plane.", solids, attributes));
+  tags.push_back(future("linearLine", "mesh", "Linear elements on a line.", solids, attributes));
+  tags.push_back(future("quadraticLine", "mesh", "Quadratic elements on a line.", solids, attributes));
+  tags.push_back(future("particles", "mesh", "Nodes alone.", solids, attributes));
+}
+
+void add_materials(std::vector<Description>& tags) {
+  const char* instead = "the law there is linearElasticMaterial";
+  const std::vector<Attribute> elastic{{"youngModulus", Type::number, "stress"},
+                                       {"poissonRatio", Type::number, "ratio"},
+                                       {"form", Type::text, "log, cubic, stable or isochoric"}};
+  tags.push_back(
+      future("stVenantKirchhoffMaterial", "material", "Linear in the Green-Lagrange strain.", instead, elastic));
+  tags.push_back(future("neoHookeanMaterial", "material", "Neo-Hookean law.", instead, elastic));
+  tags.push_back(future(
+      "mooneyRivlinMaterial", "material", "Mooney-Rivlin law.", instead,
+      {{"c1", Type::number, "stress"}, {"c2", Type::number, "stress"}, {"bulkModulus", Type::number, "stress"}}));
+  tags.push_back(future("reducedPolynomialMaterial", "material", "Polynomial in the first invariant.", instead,
+                        {{"c", Type::numbers, "coefficients"}}));
+  tags.push_back(future("polynomialMaterial", "material", "Polynomial in the invariants.", instead,
+                        {{"terms", Type::text, "i j c_ij …"}}));
+  tags.push_back(future("ogdenMaterial", "material", "Ogden's law in the principal stretches.", instead,
+                        {{"mu", Type::numbers, "stress"}, {"alpha", Type::numbers, "exponents"}}));
+  const std::vector<Attribute> fibres{{"fiber", Type::text, "direction"}, {"fiber2", Type::text, "second direction"}};
+  for (const char* tag : {"transverselyIsotropicMaterial", "holzapfelGasserOgdenMaterial", "guccioneMaterial"})
+    tags.push_back(future(tag, "material", "A law with fibres.", instead, fibres));
+  tags.push_back(future("diffusionMaterial", "material", "Coefficient of a scalar problem.", instead,
+                        {{"coefficient", Type::number, "of the gradient"}}));
+}
+
+void add_msml_constraints(std::vector<Description>& tags) {
+  tags.push_back(future("springMeshToFixed", "constraint", "Springs from points of the mesh to points in space.",
+                        "hold the points with fixedConstraint or displacementConstraint",
+                        {{"stiffness", Type::number, "force/length"},
+                         {"rayleighStiffnes", Type::number, "damping (spelled so)"},
+                         {"fixedPoints", Type::numbers, "points in space"},
+                         {"movingPoints", Type::numbers, "points of the mesh"},
+                         {"forStep", Type::text, "step"}}));
+  tags.push_back(future("supportingMesh", "constraint", "A second mesh embedded in the main one.",
+                        "give its elements a region of their own",
+                        {{"youngModulus", Type::number, "stress"},
+                         {"poissonRatio", Type::number, "ratio"},
+                         {"massDensity", Type::number, "density"},
+                         {"filename", Type::text, "the mesh"},
+                         {"forStep", Type::text, "step"}}));
+  tags.push_back(future("shapeMatchingConstraint", "constraint", "Pulls the surface onto a target surface by charges.",
+                        "move the surface with displacementConstraint",
+                        {{"referenceMesh", Type::mesh, "target surface"},
+                         {"charge", Type::number, "strength"},
+                         {"adaptCharge", Type::boolean, "adapt it"},
+                         {"samplingDistance", Type::number, "length"},
+                         {"adaptSamplingDistance", Type::boolean, "adapt it"},
+                         {"adaptActiveTriangles", Type::boolean, "adapt them"},
+                         {"forStep", Type::text, "step"}}));
+  tags.push_back(future(
+      "contactsurface", "constraint", "Contact geometry.", "bodies do not touch each other",
+      {{"surface", Type::mesh, "the surface"}, {"exportFile", Type::text, "file"}, {"forStep", Type::text, "step"}}));
+}
+
+void add_constraints(std::vector<Description>& tags) {
+  const Attribute indices{"indices", Type::index_set, "where it acts"}, step{"forStep", Type::text, "step"};
+  const char* held = "hold nodes with fixedConstraint or displacementConstraint";
+  const char* loaded = "load it with forceConstraint, surfaceTraction, surfacePressure or gravity";
+  tags.push_back(future("spring", "constraint", "A spring between two nodes.", held,
+                        {{"first", Type::integer, "node"},
+                         {"second", Type::integer, "node"},
+                         {"stiffness", Type::number, "force/length"},
+                         {"damping", Type::number, "force time/length"},
+                         {"restLength", Type::number, "length"},
+                         step}));
+  tags.push_back(
+      future("springToPoint", "constraint", "Springs from nodes to a point in space.", held,
+             {indices, {"point", Type::numbers, "point"}, {"stiffness", Type::number, "force/length"}, step}));
+  tags.push_back(future("symmetryPlane", "constraint", "Nodes that stay in a plane.",
+                        "for a plane across an axis: fixedConstraint with components=\"x\", \"y\" or \"z\"",
+                        {indices, {"normal", Type::numbers, "of the plane"}, step}));
+  tags.push_back(future("bodyForce", "constraint", "Force per volume.", loaded,
+                        {indices, {"force", Type::numbers, "force/volume"}, step}));
+  tags.push_back(future("initialVelocity", "constraint", "Velocity at the start.", "bodies start at rest",
+                        {indices, {"velocity", Type::numbers, "length/time"}, step}));
+  tags.push_back(future("initialDisplacement", "constraint", "Displacement at the start.", "bodies start undeformed",
+                        {indices, {"displacement", Type::numbers, "length"}, step}));
+  for (const char* tag : {"source", "fixedValue", "flux"})
+    tags.push_back(future(tag, "constraint", "Of a scalar problem.", "there are no scalar problems",
+                          {indices, {"value", Type::number, "its value"}, step}));
+}
+
+void add_outputs(std::vector<Description>& tags) {
+  const char* instead = "take the fields from a result";
+  const Attribute id{"id", Type::text, "start of the file name"};
+  tags.push_back(future(
+      "probe", "output", "A field at a place over time, as CSV.", instead,
+      {id, {"point", Type::numbers, "place"}, {"indices", Type::index_set, "nodes"}, {"field", Type::text, "which"}}));
+  tags.push_back(future("energies", "output", "Energies over time, as CSV.", instead, {id}));
+}
+
+}  // namespace
+
+std::vector<Description> future_tags() {
+  std::vector<Description> tags;
+  add_meshes(tags);
+  add_materials(tags);
+  add_msml_constraints(tags);
+  add_constraints(tags);
+  add_outputs(tags);
+  return tags;
+}
+
+}  // namespace msml::simulation

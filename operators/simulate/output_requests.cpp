@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tags `displacement` and `result`: what is written of a simulation.
+#include <algorithm>
+#include <sstream>
+
+#include "operators/simulate/records.hpp"
+#include "operators/simulate/settings.hpp"
+
+namespace msml::simulation {
+namespace {
+
+constexpr const char* usual_fields =
+    "displacement velocity stress vonMises stress_nodal vonMises_nodal strain energyDensity J reaction region";
+
+struct Keys {
+  Key<std::string> id, fields;
+  Key<Integer> every, timestep;
+  Key<bool> asterisk;
+};
+
+Keys add_common(Factory<OutputRequest>& tag) {
+  Keys keys;
+  keys.id = tag.parameter<std::string>("id", {.doc = "start of the file names, and what ${id} refers to"});
+  keys.every = tag.parameter<Integer>(
+      "every", {.range = closed(1, 1e9), .optional = true, .doc = "states 0, every, 2 every, … and the last"});
+  tag.produces(Type::series);
+  tag.note("Files: ID_0000.vtu, ID_0001.vtu, …, ID.pvd (all states in time, for ParaView), ID.json (the check).");
+  tag.note("Points are the deformed positions; the field displacement is x - X.");
+  return keys;
+}
+
+std::string file_stem(const Record& record, Key<std::string> key) {
+  const std::string& id = record[key];
+  if (id.empty() || id == "." || id == ".." || id.find('/') != std::string::npos)
+    refuse(record, fmt::format("id = '{}' cannot start a file name", id));
+  return id;
+}
+
+std::vector<std::string> read_fields(const Record& record, const std::string& text) {
+  std::string blanks = text;
+  std::replace(blanks.begin(), blanks.end(), ',', ' ');
+  std::istringstream words(blanks);
+  std::vector<std::string> fields{"displacement"};
+  for (std::string word; words >> word;) {
+    const auto& known = field_names();
+    if (std::find(known.begin(), known.end(), word) == known.end())
+      refuse(record, fmt::format("fields: '{}' is not known{}; there are {}", word, did_you_mean(word, known),
+                                 fmt::join(known, ", ")));
+    if (std::find(fields.begin(), fields.end(), word) == fields.end()) fields.push_back(word);
+  }
+  return fields;
+}
+
+Factory<OutputRequest> displacement() {
+  Factory<OutputRequest> tag("displacement", "output", "The deformed mesh at the times of the simulation.");
+  Keys keys = add_common(tag);
+  keys.timestep =
+      tag.parameter<Integer>("timestep", {.range = closed(0, 1e9), .fallback = 1, .doc = "as every; 0 counts as 1"});
+  keys.asterisk =
+      tag.parameter<bool>("useAsterisk", {.fallback = false, .doc = "${id} stands for the pattern ID_*.vtu"});
+  tag.note("MSML's timestep=\"k\" wrote every k+1 steps; here it is every k steps.");
+  tag.build([=](const Record& record) {
+    OutputRequest request{
+        .id = file_stem(record, keys.id), .fields = {"displacement", "region"}, .where = record.where};
+    request.every =
+        static_cast<int>(record.has(keys.every) ? record[keys.every] : std::max<Integer>(1, record[keys.timestep]));
+    return request;
+  });
+  return tag;
+}
+
+Factory<OutputRequest> result() {
+  Factory<OutputRequest> tag("result", "output", "Fields on the deformed mesh at the times of the simulation.");
+  Keys keys = add_common(tag);
+  keys.fields = tag.parameter<std::string>(
+      "fields", {.fallback = usual_fields, .doc = fmt::format("a list of {}", fmt::join(field_names(), ", "))});
+  tag.note(
+      "Stresses are Cauchy's; tensors have 6 components xx yy zz xy yz xz. stress, vonMises, strain, energyDensity, "
+      "J and region are given at elements; with _nodal: recovered at nodes.");
+  tag.build([=](const Record& record) {
+    OutputRequest request{
+        .id = file_stem(record, keys.id), .fields = read_fields(record, record[keys.fields]), .where = record.where};
+    if (record.has(keys.every)) request.every = static_cast<int>(record[keys.every]);
+    return request;
+  });
+  return tag;
+}
+
+}  // namespace
+
+bool OutputRequest::wants(const std::string& field) const {
+  return std::find(fields.begin(), fields.end(), field) != fields.end();
+}
+
+const std::vector<std::string>& field_names() {
+  static const std::vector<std::string> names{
+      "displacement", "velocity",     "acceleration",  "stress", "vonMises", "stress_nodal", "vonMises_nodal",
+      "strain",       "strain_nodal", "energyDensity", "J",      "reaction", "region"};
+  return names;
+}
+
+std::vector<Factory<OutputRequest>> outputs() { return {displacement(), result()}; }
+
+}  // namespace msml::simulation

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Finding one's way in the record of a simulation.
+#pragma once
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "msml/core/describe.hpp"
+
+namespace msml::simulation {
+
+/// All records of a category under `root`, at any depth, in document order.
+std::vector<const Record*> all_of(const Record& root, const std::string& category);
+
+/// The first of them, or null.
+const Record* first_of(const Record& root, const std::string& category);
+
+/// The text of an attribute found by its name; "" where the tag has none or the scene leaves it out.
+std::string text_of(const Record& record, const std::string& attribute);
+
+/// The attribute `indices` of a tag. Throws Error where it is absent.
+const IndexSet& indices_of(const Record& record);
+
+/// Throws Error "TAG: TEXT" at the place of the tag.
+[[noreturn]] void refuse(const Record& record, const std::string& text);
+
+/// "file:12: TAG", or the tag alone where no place is known: the start of a warning.
+std::string located(const Record& record);
+
+/// What the tag's own description builds from the record. Throws an internal Error if it builds something else.
+template <class Result>
+Result make(const Record& record) {
+  const auto* factory = dynamic_cast<const Factory<Result>*>(record.description);
+  if (factory == nullptr)
+    throw Error(fmt::format("{} does not build what its place needs", record.tag()), record.where, Failure::internal);
+  return factory->make(record);
+}
+
+/// "1 element", "12 elements".
+std::string counted(long long count, const std::string& noun);
+
+/// "(0.1, 2, -3.5)" in four digits.
+std::string place(const Vec3& x);
+
+}  // namespace msml::simulation

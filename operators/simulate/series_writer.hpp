@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The states of one output request, written to disk while the simulation runs.
+#pragma once
+#include <chrono>
+#include <filesystem>
+#include <vector>
+
+#include "msml/core/value.hpp"
+#include "operators/simulate/build_model.hpp"
+#include "operators/simulate/state_fields.hpp"
+
+namespace msml::simulation {
+
+class SeriesWriter {
+ public:
+  /// Writes nothing yet. `simulation` must outlive the writer.
+  SeriesWriter(const Simulation& simulation, const OutputRequest& request, std::filesystem::path folder);
+
+  /// Whether the request asks for this state, whatever comes after it. Of a static run the states at the start and at
+  /// the end of each step count.
+  bool wants(const fe::State& state) const;
+  /// Writes ID_NNNN.vtu whole or not at all, and now and then ID.pvd.
+  void write(const fe::State& state, StateFields& fields);
+  /// Writes the state if it is not the one written last, then ID.pvd, and removes states of an earlier, longer run.
+  void finish(const fe::State& last, StateFields& fields);
+  /// What was written.
+  Series series() const;
+  const OutputRequest& request() const { return request_; }
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  void write_collection();
+  void remove_older_states() const;
+  std::string file_name(std::size_t number) const;
+
+  OutputRequest request_;
+  std::filesystem::path folder_;
+  Mesh frame_;  ///< cells and regions of every state
+  std::shared_ptr<const Mesh> last_;
+  std::vector<double> times_;
+  std::vector<std::filesystem::path> files_;
+  int last_increment_ = -1;
+  std::chrono::steady_clock::time_point collected_{};
+};
+
+}  // namespace msml::simulation

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Descriptions of what stands around the conditions: mesh kinds, mass, solver, steps and output requests.
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "msml/core/operator.hpp"
+#include "solver/model.hpp"
+
+namespace msml::simulation {
+
+/// A mesh with the kind of element that the scene asks for.
+struct MeshChoice {
+  std::shared_ptr<const Mesh> mesh;
+  CellKind kind = CellKind::tet4;
+};
+/// linearTet and quadraticTet. Building throws Error unless all tetrahedra of the mesh are of the kind, and there are
+/// some.
+std::vector<Factory<MeshChoice>> mesh_kinds();
+
+/// The tag `mass`: mass per reference volume.
+Factory<double> mass();
+
+/// Settings of the solver; what is accepted for old scenes is noted. `threads` is used where the scene says nothing.
+using SettingsBuilder = std::function<fe::Settings(Reporter&, int threads)>;
+Factory<SettingsBuilder> solver();
+
+/// A step without conditions.
+Factory<fe::Step> step();
+
+/// What is written of a simulation.
+struct OutputRequest {
+  std::string id;                   ///< start of the file names
+  int every = 1;                    ///< states 0, every, 2 every, … and the last
+  std::vector<std::string> fields;  ///< in the order written; always with "displacement"
+  Location where;
+  bool wants(const std::string& field) const;
+};
+/// `displacement` (as in MSML) and `result` (any fields).
+std::vector<Factory<OutputRequest>> outputs();
+
+/// Names that `fields` of a result may list.
+const std::vector<std::string>& field_names();
+
+/// Tags of the language that parse but are refused for now.
+std::vector<Description> future_tags();
+
+}  // namespace msml::simulation

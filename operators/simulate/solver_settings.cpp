@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tags `solver` and `step`.
+#include <algorithm>
+#include <map>
+
+#include "operators/simulate/records.hpp"
+#include "operators/simulate/settings.hpp"
+
+namespace msml::simulation {
+namespace {
+
+struct Keys {
+  Key<std::string> integration, linear, preconditioner, unit, mass;
+  Key<double> damping_mass, damping_stiffness, tolerance, linear_tolerance;
+  Key<Integer> newton, load_steps, threads, old_threads;
+  Key<bool> line_search;
+};
+
+const std::map<std::string, fe::Preconditioner>& preconditioners() {
+  static const std::map<std::string, fe::Preconditioner> known{
+      {"none", fe::Preconditioner::none},
+      {"jacobi", fe::Preconditioner::jacobi},
+      {"blockJacobi", fe::Preconditioner::block_jacobi},
+      {"incompleteCholesky", fe::Preconditioner::incomplete_cholesky},
+      {"auto", fe::Preconditioner::automatic}};
+  return known;
+}
+
+/// Names of other programs are capitals: SGAUSS_SEIDEL, ILU2; ours start in lower case.
+bool of_other_program(const std::string& name) {
+  return name.empty() || std::all_of(name.begin(), name.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+         });
+}
+
+fe::Preconditioner preconditioner(const Record& record, const std::string& name, Reporter& reporter) {
+  if (const auto known = preconditioners().find(name); known != preconditioners().end()) return known->second;
+  if (name == "multigrid") refuse(record, "preconditioner = multigrid is not available yet; use auto");
+  if (!of_other_program(name))
+    refuse(record,
+           fmt::format("preconditioner = '{}' is not one of none, jacobi, blockJacobi, incompleteCholesky, auto{}",
+                       name, did_you_mean(name, {"none", "jacobi", "blockJacobi", "incompleteCholesky"})));
+  reporter.note(fmt::format("solver: preconditioner {} belongs to another program; taken as auto", name));
+  return fe::Preconditioner::automatic;
+}
+
+void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
+  keys.integration = tag.parameter<std::string>(
+      "timeIntegration",
+      {.fallback = "dynamicImplicitEuler",
+       .choices = {"static", "dynamicImplicitEuler", "Newmark", "NewmarkShapeMatching"},
+       .doc = "Newmark: average acceleration (beta 1/4, gamma 1/2); NewmarkShapeMatching: the same"});
+  keys.linear = tag.parameter<std::string>(
+      "linearSolver", {.fallback = "auto",
+                       .choices = {"direct", "iterativeCG", "CG", "GMRES", "auto"},
+                       .doc = "direct: sparse Cholesky; the others: conjugate gradients; auto: by size"});
+  keys.preconditioner = tag.parameter<std::string>(
+      "preconditioner",
+      {.fallback = "auto",
+       .doc = "of conjugate gradients: none, jacobi, blockJacobi, incompleteCholesky or auto; names of "
+              "other programs, written in capitals, count as auto"});
+  keys.unit = tag.parameter<std::string>(
+      "processingUnit",
+      {.fallback = "CPU", .choices = {"CPU", "CPUDouble", "GPU"}, .doc = "all run on the CPU in double precision"});
+  keys.mass = tag.parameter<std::string>(
+      "mass", {.fallback = "full", .choices = {"full", "lumped"}, .doc = "full: consistent mass matrix"});
+  keys.damping_mass = tag.parameter(
+      "dampingRayleighRatioMass",
+      {.unit = "1/time", .range = nonnegative(), .fallback = 0.0, .doc = "damping matrix alpha M + beta K: alpha"});
+  keys.damping_stiffness = tag.parameter(
+      "dampingRayleighRatioStiffness",
+      {.unit = "time", .range = nonnegative(), .fallback = 0.0, .doc = "damping matrix alpha M + beta K: beta"});
+}
+
+void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
+  const fe::Settings usual;
+  keys.newton = tag.parameter<Integer>(
+      "newtonIterations",
+      {.range = closed(1, 1000), .fallback = usual.newton_iterations, .doc = "at most; 1: one linear solve per step"});
+  keys.tolerance = tag.parameter(
+      "tolerance",
+      {.range = open(0, 1), .fallback = usual.tolerance, .doc = "of Newton: residual relative to the loads"});
+  keys.linear_tolerance = tag.parameter(
+      "linearTolerance", {.range = open(0, 1),
+                          .fallback = usual.linear_tolerance,
+                          .doc = "of conjugate gradients: true residual over the right-hand side, from a zero start"});
+  keys.line_search = tag.parameter<bool>("lineSearch", {.fallback = true, .doc = "shorten steps that do not descend"});
+  keys.load_steps = tag.parameter<Integer>(
+      "loadSteps", {.range = closed(1, 100000), .fallback = 1, .doc = "static: equal parts that the loads come in"});
+  keys.threads = tag.parameter<Integer>(
+      "threads", {.range = closed(1, 1024), .optional = true, .doc = "absent: as many as the program may use"});
+  keys.old_threads = tag.parameter<Integer>(
+      "numParallelProcessesOnCPU",
+      {.range = closed(1, 1024), .optional = true, .doc = "MSML's name of threads, which wins over this"});
+}
+
+void note_old_names(const Record& record, const Keys& keys, Reporter& reporter) {
+  if (record[keys.unit] == "GPU") reporter.note("solver: processingUnit GPU is not there; the CPU is used");
+  if (record[keys.linear] == "GMRES") reporter.note("solver: GMRES is taken as CG, since the matrices are symmetric");
+  if (record[keys.integration] == "NewmarkShapeMatching")
+    reporter.note("solver: NewmarkShapeMatching is taken as Newmark");
+}
+
+fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, int threads) {
+  note_old_names(record, keys, reporter);
+  fe::Settings settings;
+  const std::string& integration = record[keys.integration];
+  settings.integrator = integration == "static"                 ? fe::Integrator::static_
+                        : integration == "dynamicImplicitEuler" ? fe::Integrator::implicit_euler
+                                                                : fe::Integrator::newmark;
+  const std::string& linear = record[keys.linear];
+  settings.linear_solver = linear == "direct" ? fe::LinearSolver::direct
+                           : linear == "auto" ? fe::LinearSolver::automatic
+                                              : fe::LinearSolver::cg;
+  settings.preconditioner = preconditioner(record, record[keys.preconditioner], reporter);
+  settings.damping_mass = record[keys.damping_mass];
+  settings.damping_stiffness = record[keys.damping_stiffness];
+  settings.lumped_mass = record[keys.mass] == "lumped";
+  settings.newton_iterations = static_cast<int>(record[keys.newton]);
+  settings.tolerance = record[keys.tolerance];
+  settings.linear_tolerance = record[keys.linear_tolerance];
+  settings.line_search = record[keys.line_search];
+  settings.load_steps = static_cast<int>(record[keys.load_steps]);
+  settings.threads = record.has(keys.threads)       ? static_cast<int>(record[keys.threads])
+                     : record.has(keys.old_threads) ? static_cast<int>(record[keys.old_threads])
+                                                    : threads;
+  return settings;
+}
+
+}  // namespace
+
+Factory<SettingsBuilder> solver() {
+  Factory<SettingsBuilder> tag("solver", "solver", "How the equations are integrated and solved.");
+  Keys keys;
+  describe_method(tag, keys);
+  describe_control(tag, keys);
+  tag.build([=](const Record& record) -> SettingsBuilder {
+    return [=, &record](Reporter& reporter, int threads) { return read(record, keys, reporter, threads); };
+  });
+  return tag;
+}
+
+Factory<fe::Step> step() {
+  Factory<fe::Step> tag("step", "step", "A stage of the simulation; steps run one after another.");
+  const auto name = tag.parameter<std::string>("name", {.optional = true, .doc = "what forStep refers to"});
+  const auto dt = tag.parameter("dt", {.unit = "time", .range = positive(), .fallback = 0.05, .doc = "the time step"});
+  const auto iterations = tag.parameter<Integer>(
+      "iterations", {.range = closed(1, 1e9), .fallback = 100, .doc = "number of time steps; no meaning in static"});
+  const auto gravity = tag.parameter<std::vector<double>>(
+      "gravity", {.unit = "length/time^2",
+                  .fallback = std::vector<double>{0, 0, -9.81},
+                  .counts = {3},
+                  .doc = "acceleration on all masses; a step that says nothing has earth's, in metres and seconds"});
+  tag.build([=](const Record& record) {
+    const std::vector<double>& g = record[gravity];
+    return fe::Step{.name = record.has(name) ? record[name] : record.id,
+                    .dt = record[dt],
+                    .count = static_cast<int>(record[iterations]),
+                    .gravity = Vec3(g.at(0), g.at(1), g.at(2))};
+  });
+  return tag;
+}
+
+}  // namespace msml::simulation
