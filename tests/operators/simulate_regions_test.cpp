@@ -74,8 +74,8 @@ TEST(Regions, ASingleRegionExtendsToTheRestWithACount) {
 TEST(Regions, ElementsInNoneOfSeveralRegionsAreCountedAndLocated) {
   const Language language;
   EXPECT_EQ(message(language, bar(language, {range(0, 6), range(6, 11)})),
-            "scene.xml:7: 1 of 12 elements belong to no region; their centres lie in (0.5, 0.25, 1.75) to (0.5, 0.25, "
-            "1.75), the first is element 11 at (0.5, 0.25, 1.75). Widen the indices of a region");
+            "scene.xml:7: 1 of 12 elements belong to no region; their centres lie in (0.5, 0.75, 1.25) to (0.5, 0.75, "
+            "1.25), the first is element 11 at (0.5, 0.75, 1.25). Widen the indices of a region");
 }
 
 TEST(Regions, OfTwoRegionsThatClaimAnElementTheLaterWins) {

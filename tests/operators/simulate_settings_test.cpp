@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tags solver, step, displacement and result; and what the language refuses for now.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "operators/simulate/build_model.hpp"
+#include "tests/operators/simulate_scene.hpp"
+
+namespace msml::test {
+namespace {
+
+using simulation::build_model;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+fe::Settings settings(const Attributes& attributes, Listener& listener, int threads = 2) {
+  const Language language;
+  Scene scene = cube(language);
+  scene.solver = attributes;
+  return build_model(scene.record(language), listener, threads).model.settings;
+}
+
+std::string message(const Scene& scene, const Language& language) {
+  Listener listener;
+  try {
+    build_model(scene.record(language), listener, 1);
+  } catch (const Error& error) {
+    return error.str();
+  }
+  return "no error";
+}
+
+TEST(Solver, DefaultsAreImplicitEulerWithTheProgramsThreads) {
+  Listener listener;
+  const auto made = settings({}, listener);
+  EXPECT_EQ(made.integrator, fe::Integrator::implicit_euler);
+  EXPECT_EQ(made.linear_solver, fe::LinearSolver::automatic);
+  EXPECT_EQ(made.threads, 2);
+  EXPECT_FALSE(made.lumped_mass);
+}
+
+TEST(Solver, AttributesReachTheModel) {
+  Listener listener;
+  const auto made = settings({{"timeIntegration", std::string("static")},
+                              {"linearSolver", std::string("direct")},
+                              {"preconditioner", std::string("blockJacobi")},
+                              {"dampingRayleighRatioMass", 0.2},
+                              {"dampingRayleighRatioStiffness", 0.4},
+                              {"mass", std::string("lumped")},
+                              {"newtonIterations", Integer{7}},
+                              {"tolerance", 1e-5},
+                              {"linearTolerance", 1e-6},
+                              {"lineSearch", false},
+                              {"loadSteps", Integer{3}},
+                              {"threads", Integer{4}}},
+                             listener);
+  EXPECT_EQ(made.integrator, fe::Integrator::static_);
+  EXPECT_EQ(made.linear_solver, fe::LinearSolver::direct);
+  EXPECT_EQ(made.preconditioner, fe::Preconditioner::block_jacobi);
+  EXPECT_EQ(made.damping_mass, 0.2);
+  EXPECT_EQ(made.damping_stiffness, 0.4);
+  EXPECT_TRUE(made.lumped_mass);
+  EXPECT_EQ(made.newton_iterations, 7);
+  EXPECT_EQ(made.tolerance, 1e-5);
+  EXPECT_EQ(made.linear_tolerance, 1e-6);
+  EXPECT_FALSE(made.line_search);
+  EXPECT_EQ(made.load_steps, 3);
+  EXPECT_EQ(made.threads, 4);
+}
+
+TEST(Solver, OldNamesAreAcceptedWithANoteEach) {
+  Listener listener;
+  const auto made = settings({{"timeIntegration", std::string("NewmarkShapeMatching")},
+                              {"linearSolver", std::string("GMRES")},
+                              {"preconditioner", std::string("SGAUSS_SEIDEL")},
+                              {"processingUnit", std::string("GPU")},
+                              {"numParallelProcessesOnCPU", Integer{4}}},
+                             listener);
+  EXPECT_EQ(made.integrator, fe::Integrator::newmark);
+  EXPECT_EQ(made.linear_solver, fe::LinearSolver::cg);
+  EXPECT_EQ(made.preconditioner, fe::Preconditioner::automatic);
+  EXPECT_EQ(made.threads, 4);
+  EXPECT_THAT(listener.notes,
+              ElementsAre("solver: processingUnit GPU is not there; the CPU is used",
+                          "solver: GMRES is taken as CG, since the matrices are symmetric",
+                          "solver: NewmarkShapeMatching is taken as Newmark",
+                          "solver: preconditioner SGAUSS_SEIDEL belongs to another program; taken as auto"));
+}
+
+TEST(Solver, OtherPreconditionersAreRefused) {
+  const Language language;
+  Scene scene = cube(language);
+  scene.solver = {{"preconditioner", std::string("blockJacobbi")}};
+  EXPECT_EQ(message(scene, language),
+            "scene.xml:7: solver: preconditioner = 'blockJacobbi' is not one of none, jacobi, blockJacobi, "
+            "incompleteCholesky, auto (did you mean 'blockJacobi'?)");
+  scene.solver = {{"preconditioner", std::string("multigrid")}};
+  EXPECT_EQ(message(scene, language), "scene.xml:7: solver: preconditioner = multigrid is not available yet; use auto");
+}
+
+TEST(Step, DefaultsAreThoseOfMsml) {
+  const Language language;
+  Listener listener;
+  Scene scene = cube(language);
+  scene.steps = {language.tag("step", "step")};
+  const auto model = build_model(scene.record(language), listener, 1).model;
+  EXPECT_EQ(model.steps[0].name, "step1");
+  EXPECT_EQ(model.steps[0].dt, 0.05);
+  EXPECT_EQ(model.steps[0].count, 100);
+  EXPECT_EQ(model.steps[0].gravity, Vec3(0, 0, -9.81));
+  EXPECT_THAT(listener.notes, ElementsAre("scene.xml:7: step: no gravity given, so it is (0, 0, -9.81) as in MSML"));
+}
+
+TEST(Displacement, TimestepAndEverySayWhichStates) {
+  const Language language;
+  Listener listener;
+  Scene scene = cube(language);
+  const std::string tag = "displacement";
+  scene.outputs = {
+      language.tag(tag, "output", {{"id", std::string("a")}}),
+      language.tag(tag, "output", {{"id", std::string("b")}, {"timestep", Integer{0}}}),
+      language.tag(tag, "output", {{"id", std::string("c")}, {"timestep", Integer{5}}}),
+      language.tag(tag, "output", {{"id", std::string("d")}, {"timestep", Integer{5}}, {"every", Integer{2}}})};
+  std::vector<int> every;
+  for (const auto& output : build_model(scene.record(language), listener, 1).outputs) every.push_back(output.every);
+  EXPECT_THAT(every, ElementsAre(1, 1, 5, 2));
+}
+
+TEST(Result, FieldsAreAListThatAlwaysHoldsTheDisplacement) {
+  const Language language;
+  Listener listener;
+  Scene scene = cube(language);
+  scene.outputs = {
+      language.tag("result", "output", {{"id", std::string("a")}, {"fields", std::string("vonMises, J vonMises")}})};
+  EXPECT_THAT(build_model(scene.record(language), listener, 1).outputs[0].fields,
+              ElementsAre("displacement", "vonMises", "J"));
+}
+
+TEST(Result, UnknownFieldsAreRefusedWithTheNearest) {
+  const Language language;
+  Scene scene = cube(language);
+  scene.outputs = {language.tag("result", "output", {{"id", std::string("a")}, {"fields", std::string("vonmises")}})};
+  EXPECT_EQ(
+      message(scene, language),
+      "scene.xml:7: result: fields: 'vonmises' is not known (did you mean 'vonMises'?); there are displacement, "
+      "velocity, acceleration, stress, vonMises, stress_nodal, vonMises_nodal, strain, strain_nodal, energyDensity, J, "
+      "reaction, region");
+}
+
+TEST(Result, AnIdThatIsNoFileNameIsRefused) {
+  const Language language;
+  Scene scene = cube(language);
+  for (const std::string id : {"", "..", "a/b"}) {
+    scene.outputs = {language.tag("result", "output", {{"id", id}})};
+    EXPECT_EQ(message(scene, language), "scene.xml:7: result: id = '" + id + "' cannot start a file name");
+  }
+}
+
+TEST(FutureTags, AreKnownAndRefusedWithWhatToUseInstead) {
+  const Language language;
+  for (const char* tag :
+       {"springMeshToFixed", "supportingMesh", "shapeMatchingConstraint", "contactsurface", "spring"}) {
+    const Description* description = language.registry().find(tag, {"constraint"});
+    ASSERT_NE(description, nullptr) << tag;
+    EXPECT_FALSE(description->unavailable().empty()) << tag;
+  }
+  EXPECT_GE(language.registry().find("springMeshToFixed", {"constraint"})->find("rayleighStiffnes"), 0);
+  EXPECT_NE(language.registry().find("neoHookeanMaterial", {"material"}), nullptr);
+}
+
+TEST(Outputs, ProduceASeries) {
+  const Language language;
+  for (const char* tag : {"displacement", "result"})
+    EXPECT_EQ(language.registry().find(tag, {"output"})->produces(), Type::series);
+}
+
+}  // namespace
+}  // namespace msml::test
