@@ -17,33 +17,34 @@ class Law;  // solver/materials/law.hpp
 struct Region {
   std::string name;
   std::shared_ptr<const Law> law;
-  double density = 1;             ///< mass per reference volume, >= 0
-  std::vector<int> elements;      ///< cell ids of tet4 or tet10 cells of Model::mesh
+  double density = 1;         ///< mass per reference volume, >= 0
+  std::vector<int> elements;  ///< cell ids of tet4 or tet10 cells of Model::mesh
 };
 
 enum class Ramp { linear, step };
 
 /// Total displacement of nodes from the reference configuration, per component. With Ramp::linear the value is reached
-/// linearly from the state at the start of the step; it holds in later steps unless they say otherwise.
+/// linearly from the state at the start of the step. It acts in the steps that list it; a later step that does not list
+/// it lets go. Where two conditions fix one component of a node, the later in the list wins.
 struct Prescribed {
   std::string name;
   std::vector<int> nodes;
-  std::vector<Vec3> values;       ///< one for all, or one per node
+  std::vector<Vec3> values;  ///< one for all, or one per node
   bool components[3] = {true, true, true};
-  Ramp ramp = Ramp::linear;       ///< zero displacement (a fixed node) uses step
+  Ramp ramp = Ramp::linear;  ///< zero displacement (a fixed node) uses step
 };
 
 /// Force on each node (not shared between them), dead.
 struct NodalForce {
   std::string name;
   std::vector<int> nodes;
-  std::vector<Vec3> values;       ///< one for all, or one per node
+  std::vector<Vec3> values;  ///< one for all, or one per node
 };
 
 /// A boundary face of a tetrahedron: element and local face (see msml::tet_faces).
 struct Face {
-  int element = -1;               ///< cell id
-  int local = -1;                 ///< 0..3
+  int element = -1;  ///< cell id
+  int local = -1;    ///< 0..3
 };
 
 /// Pressure (positive pushes against the outward normal) or a traction vector on faces.
@@ -55,11 +56,13 @@ struct FaceLoad {
   bool follower = false;          ///< pressure acts on the deformed face (with its tangent)
 };
 
-/// One stage of a simulation: `count` time steps of `dt`. What acts is listed anew for each stage.
+/// One stage of a simulation: `count` time steps of `dt`. What acts is listed anew for each stage. In dynamics loads
+/// act in full from the start; in statics they change linearly from those of the stage before (at first: none) to
+/// these, in Settings::load_steps equal parts, each of them one reported state; time then runs over dt * count.
 struct Step {
   std::string name;
-  double dt = 0.05;               ///< time, > 0
-  int count = 100;                ///< number of time steps
+  double dt = 0.05;  ///< time, > 0
+  int count = 100;   ///< number of time steps
   Vec3 gravity = Vec3(0, 0, -9.81);
   std::vector<Prescribed> prescribed;
   std::vector<NodalForce> forces;
@@ -74,14 +77,15 @@ struct Settings {
   Integrator integrator = Integrator::implicit_euler;
   LinearSolver linear_solver = LinearSolver::automatic;
   Preconditioner preconditioner = Preconditioner::automatic;
-  double damping_mass = 0;        ///< Rayleigh alpha, 1/time, >= 0
-  double damping_stiffness = 0;   ///< Rayleigh beta, time, >= 0
+  double damping_mass = 0;       ///< Rayleigh alpha, 1/time, >= 0
+  double damping_stiffness = 0;  ///< Rayleigh beta, time, >= 0
   bool lumped_mass = false;
-  int newton_iterations = 25;     ///< at most; 1 = one linear solve per step
-  double tolerance = 1e-8;        ///< residual relative to the loads
+  int newton_iterations = 25;  ///< at most; 1 = one linear solve per step
+  double tolerance = 1e-8;     ///< residual relative to the loads
   double linear_tolerance = 1e-10;
-  int load_steps = 1;             ///< static: the loads are applied in so many equal parts
+  int load_steps = 1;  ///< static: the loads are applied in so many equal parts
   bool line_search = true;
+  bool allow_inverted = false;  ///< go on where an element of a finite-strain law inverts (det F <= 0)
   int threads = 1;
 };
 
@@ -97,49 +101,57 @@ struct Model {
 /// The unknowns at one time. All arrays are #points x 3 of Model::mesh.
 struct State {
   double time = 0;
-  int step = 0;                      ///< index into Model::steps
-  int increment = 0;                 ///< 0 = initial state, then 1, 2, … over all steps
+  int step = 0;       ///< index into Model::steps
+  int increment = 0;  ///< 0 = initial state, then 1, 2, … over all steps
   Points displacement, velocity, acceleration;
-  Points reaction;                   ///< force of the constraint on the body; zero where free
+  Points reaction;  ///< force of the constraint on the body; zero where free
 };
 
 /// What the equations gave at the elements of one state; one entry per mesh cell (zero for cells without unknowns).
 /// Means over the quadrature points. 6 components: xx yy zz xy yz xz.
 struct ElementResults {
-  std::vector<double> cauchy;        ///< #cells x 6
-  std::vector<double> strain;        ///< #cells x 6; the strain of the law (corotated: U - I, small: sym grad u)
-  std::vector<double> energy_density;///< #cells, per reference volume
-  std::vector<double> J;             ///< #cells, smallest det F of the element
-  std::vector<double> rotation;      ///< #cells, angle of the polar rotation in degrees, largest of the element
+  std::vector<double> cauchy;          ///< #cells x 6
+  std::vector<double> strain;          ///< #cells x 6; the strain of the law (corotated: U - I, small: sym grad u)
+  std::vector<double> energy_density;  ///< #cells, per reference volume
+  std::vector<double> J;               ///< #cells, smallest det F of the element
+  std::vector<double> rotation;        ///< #cells, angle of the polar rotation in degrees, largest of the element
 };
 
 /// The check after every run, part of the answer (scene-language, section 4).
 struct Check {
-  double residual = 0;               ///< ||f_ext - f_int - M a - D v|| over free unknowns, relative to `load_scale`
-  double load_scale = 0;             ///< largest of the norms of external, internal, inertia and reaction forces
+  double residual = 0;    ///< ||f_ext - f_int - M a - D v|| over free unknowns, relative to `load_scale`
+  double load_scale = 0;  ///< largest of the norms of external, internal, inertia and reaction forces
   Vec3 sum_loads = Vec3::Zero(), sum_reactions = Vec3::Zero(), sum_inertia = Vec3::Zero(), sum_damping = Vec3::Zero();
-  double balance = 0;                ///< |loads + reactions - inertia - damping| relative to the largest of them
+  double balance = 0;                    ///< |loads + reactions - inertia - damping| relative to the largest of them
   double volume = 0, volume_change = 0;  ///< reference volume; (v - V) / V
   double mass = 0;
   double smallest_J = std::numeric_limits<double>::infinity();
   int smallest_J_element = -1;
-  double largest_strain = 0;         ///< largest absolute principal strain of U - I
-  double largest_rotation = 0;       ///< degrees
-  double damped_per_cycle = 0;       ///< amplitude loss of the lowest free period per cycle; 0 if static
-  double lowest_period = 0;          ///< from the smallest eigenvalue (inverse iteration); 0 if static
+  double largest_strain = 0;    ///< largest absolute principal strain of U - I
+  double largest_rotation = 0;  ///< degrees
+  double damped_per_cycle = 0;  ///< amplitude loss of the lowest free period per cycle; 0 if static
+  double lowest_period = 0;     ///< from the smallest eigenvalue (inverse iteration); 0 if static
 };
 
 enum class Stop {
-  converged, newton_limit, diverged, inverted_element, indefinite_tangent, linear_solver_limit, singular, interrupted
+  converged,
+  newton_limit,
+  diverged,
+  inverted_element,
+  indefinite_tangent,
+  linear_solver_limit,
+  singular,
+  interrupted,
+  out_of_memory
 };
 const char* name(Stop stop);
 
 /// How a run ended and what it cost. Non-convergence is a result with a reason, never an exception.
 struct Outcome {
   Stop stop = Stop::converged;
-  std::string diagnosis;             ///< step, residual history, worst element with its place, what to try; "" if converged
-  State state;                       ///< the last good state
-  Check check;                       ///< of that state
+  std::string diagnosis;  ///< step, residual history, worst element with its place, what to try; "" if converged
+  State state;            ///< the last good state
+  Check check;            ///< of that state
   long unknowns = 0;
   int newton_iterations = 0, linear_solves = 0;
   long cg_iterations = 0;

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Products and sums of block matrices in parallel.
+#include "solver/block_matrix.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace msml::fe {
+namespace {
+
+using Range = tbb::blocked_range<std::size_t>;
+
+template <class Body>
+void for_rows(int rows, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, rows, 256), [&](const tbb::blocked_range<int>& range) {
+    for (int r = range.begin(); r < range.end(); ++r) body(r);
+  });
+}
+
+}  // namespace
+
+int Pattern::find(int row, int column) const {
+  const auto first = columns.begin() + offsets[static_cast<std::size_t>(row)];
+  const auto last = columns.begin() + offsets[static_cast<std::size_t>(row) + 1];
+  return static_cast<int>(std::lower_bound(first, last, column) - columns.begin());
+}
+
+PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes) {
+  const std::size_t elements = element_nodes.size() / static_cast<std::size_t>(nodes);
+  std::vector<int> first(static_cast<std::size_t>(count) + 1, 0);
+  for (const int node : element_nodes) ++first[static_cast<std::size_t>(node) + 1];
+  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+  std::vector<int> elements_of(element_nodes.size()), fill(first.begin(), first.end() - 1);
+  for (std::size_t e = 0; e < elements; ++e)
+    for (int a = 0; a < nodes; ++a)
+      elements_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(element_nodes[e * nodes + a])]++)] =
+          static_cast<int>(e);
+  auto pattern = std::make_shared<Pattern>();
+  pattern->offsets.reserve(static_cast<std::size_t>(count) + 1);
+  std::vector<int> row;
+  for (int r = 0; r < count; ++r) {
+    row.assign(1, r);
+    for (int k = first[static_cast<std::size_t>(r)]; k < first[static_cast<std::size_t>(r) + 1]; ++k) {
+      const auto e = element_nodes.begin() + static_cast<long>(elements_of[static_cast<std::size_t>(k)]) * nodes;
+      row.insert(row.end(), e, e + nodes);
+    }
+    std::sort(row.begin(), row.end());
+    row.erase(std::unique(row.begin(), row.end()), row.end());
+    const auto self = std::lower_bound(row.begin(), row.end(), r) - row.begin();
+    pattern->diagonal.push_back(static_cast<int>(pattern->columns.size()) + static_cast<int>(self));
+    pattern->columns.insert(pattern->columns.end(), row.begin(), row.end());
+    pattern->offsets.push_back(static_cast<int>(pattern->columns.size()));
+  }
+  return pattern;
+}
+
+void BlockMatrix::set_zero() {
+  tbb::parallel_for(Range(0, values.size(), 1 << 16), [&](const Range& r) {
+    std::fill(values.begin() + static_cast<long>(r.begin()), values.begin() + static_cast<long>(r.end()), 0.0);
+  });
+}
+
+void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
+  const Pattern& pattern = *A.pattern;
+  y.resize(x.size());
+  for_rows(pattern.nodes(), [&](int r) {
+    double s0 = 0, s1 = 0, s2 = 0;
+    for (int p = pattern.offsets[r]; p < pattern.offsets[r + 1]; ++p) {
+      const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
+      const double* v = x.data() + 3 * pattern.columns[p];
+      s0 += a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
+      s1 += a[3] * v[0] + a[4] * v[1] + a[5] * v[2];
+      s2 += a[6] * v[0] + a[7] * v[1] + a[8] * v[2];
+    }
+    y[3 * r] = s0, y[3 * r + 1] = s1, y[3 * r + 2] = s2;
+  });
+}
+
+void multiply(const ScalarMatrix& A, const Vector& x, Vector& y) {
+  const Pattern& pattern = *A.pattern;
+  y.resize(x.size());
+  for_rows(pattern.nodes(), [&](int r) {
+    double s0 = 0, s1 = 0, s2 = 0;
+    for (int p = pattern.offsets[r]; p < pattern.offsets[r + 1]; ++p) {
+      const double a = A.values[p];
+      const double* v = x.data() + 3 * pattern.columns[p];
+      s0 += a * v[0], s1 += a * v[1], s2 += a * v[2];
+    }
+    y[3 * r] = s0, y[3 * r + 1] = s1, y[3 * r + 2] = s2;
+  });
+}
+
+void add(BlockMatrix& A, double s, const ScalarMatrix& M) {
+  tbb::parallel_for(Range(0, M.values.size(), 1 << 14), [&](const Range& range) {
+    for (std::size_t p = range.begin(); p < range.end(); ++p)
+      for (int i = 0; i < 3; ++i) A.values[9 * p + 4 * static_cast<std::size_t>(i)] += s * M.values[p];
+  });
+}
+
+void add(BlockMatrix& A, double s, const BlockMatrix& B) {
+  tbb::parallel_for(Range(0, A.values.size(), 1 << 16), [&](const Range& range) {
+    for (std::size_t p = range.begin(); p < range.end(); ++p) A.values[p] += s * B.values[p];
+  });
+}
+
+double dot(const Vector& x, const Vector& y) {
+  constexpr Eigen::Index piece = 4096;
+  const Eigen::Index pieces = (x.size() + piece - 1) / piece;
+  std::vector<double> sums(static_cast<std::size_t>(pieces));
+  tbb::parallel_for(Eigen::Index(0), pieces, [&](Eigen::Index k) {
+    const Eigen::Index length = std::min(piece, x.size() - k * piece);
+    sums[static_cast<std::size_t>(k)] = x.segment(k * piece, length).dot(y.segment(k * piece, length));
+  });
+  double sum = 0;
+  for (const double s : sums) sum += s;
+  return sum;
+}
+
+}  // namespace msml::fe

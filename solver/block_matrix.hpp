@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sparse matrices with one 3 x 3 block (or one number) per pair of neighbouring nodes.
+#pragma once
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+namespace msml::fe {
+
+using Vector = Eigen::VectorXd;  ///< 3 numbers per node, node after node
+
+/// Which nodes share an element. Symmetric, sorted, diagonal included.
+struct Pattern {
+  std::vector<int> offsets{0};  ///< #nodes + 1
+  std::vector<int> columns;     ///< neighbours of node r: columns[offsets[r] .. offsets[r+1]), ascending
+  std::vector<int> diagonal;    ///< position of block (r, r)
+  int nodes() const { return static_cast<int>(diagonal.size()); }
+  /// Position of block (row, column), which must exist.
+  int find(int row, int column) const;
+};
+using PatternPtr = std::shared_ptr<const Pattern>;
+
+/// The pattern of a list of elements: `nodes` node numbers each, all below `count`.
+PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes);
+
+/// values[9 p + 3 i + j] is entry (i, j) of the block at position p.
+struct BlockMatrix {
+  PatternPtr pattern;
+  std::vector<double> values;
+  explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)), values(9 * pattern->columns.size(), 0.0) {}
+  void set_zero();
+};
+
+/// values[p] times the 3 x 3 identity is the block at position p.
+struct ScalarMatrix {
+  PatternPtr pattern;
+  std::vector<double> values;
+  explicit ScalarMatrix(PatternPtr p) : pattern(std::move(p)), values(pattern->columns.size(), 0.0) {}
+};
+
+/// y = A x, in parallel over rows; the result does not depend on the number of threads.
+void multiply(const BlockMatrix& A, const Vector& x, Vector& y);
+void multiply(const ScalarMatrix& A, const Vector& x, Vector& y);
+
+/// A += s M on every block's diagonal.
+void add(BlockMatrix& A, double s, const ScalarMatrix& M);
+/// A += s B.
+void add(BlockMatrix& A, double s, const BlockMatrix& B);
+
+/// x . y, summed in pieces of fixed size so that the result does not depend on the number of threads.
+double dot(const Vector& x, const Vector& y);
+
+}  // namespace msml::fe

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Measures the answer of a run.
+#include "solver/check_answer.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/measure.hpp"
+
+namespace msml::fe {
+namespace {
+
+Vec3 sum(const Vector& v) {
+  Vec3 total = Vec3::Zero();
+  for (Eigen::Index k = 0; k < v.size(); k += 3) total += v.segment<3>(k);
+  return total;
+}
+
+void check_balance(const Run& run, const Mask& fixed, Check& check) {
+  const Forces& f = run.newton.forces();
+  const Vector residual = f.residual();
+  check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm()});
+  if (check.load_scale > 0) check.residual = free_norm(residual, fixed) / check.load_scale;
+  check.sum_loads = sum(f.external);
+  check.sum_reactions = sum(run.now.reaction);
+  check.sum_inertia = sum(f.inertia);
+  check.sum_damping = sum(f.damping);
+  const double largest = std::max(
+      {check.sum_loads.norm(), check.sum_reactions.norm(), check.sum_inertia.norm(), check.sum_damping.norm(), 1e-300});
+  check.balance = (check.sum_loads + check.sum_reactions - check.sum_inertia - check.sum_damping).norm() / largest;
+}
+
+void check_deformation(const Run& run, Check& check) {
+  const std::vector<ElementPoints> points = run.equations.elements().points(run.now.u);
+  double volume = 0, deformed = 0;
+  for (std::size_t e = 0; e < points.size(); ++e) {
+    const Deformation d = deformation(points[e]);
+    volume += d.volume;
+    deformed += d.deformed_volume;
+    check.largest_strain = std::max(check.largest_strain, d.largest_strain);
+    check.largest_rotation = std::max(check.largest_rotation, d.largest_rotation);
+    if (d.smallest_J < check.smallest_J) {
+      check.smallest_J = d.smallest_J;
+      check.smallest_J_element = run.equations.numbering().elements[e];
+    }
+  }
+  check.volume = volume;
+  check.volume_change = (deformed - volume) / volume;
+  check.mass = run.equations.total_mass();
+}
+
+/// Lowest period of K x = w^2 M x by inverse iteration; 0 if K cannot be factorised (a body free to move).
+double lowest_period(Run& run, const Mask& fixed) {
+  LinearSystem& linear = run.newton.linear();
+  const BlockMatrix& K = run.newton.tangent();
+  const ScalarMatrix& M = run.equations.mass();
+  if (linear.factor(K, fixed) != LinearStatus::done) return 0;
+  Vector x = Vector::Zero(run.equations.size()), Mx, y;
+  unsigned seed = 1;
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
+    seed = seed * 1664525u + 1013904223u;
+    if (!fixed[static_cast<std::size_t>(k)]) x[k] = 0.5 + static_cast<double>(seed >> 8) / (1 << 24);
+  }
+  double square = 0;
+  for (int iteration = 0; iteration < 30; ++iteration) {
+    multiply(M, x, Mx);
+    const double size = std::sqrt(dot(x, Mx));
+    if (!(size > 0)) return 0;
+    x /= size;
+    Mx /= size;
+    if (linear.solve(Mx, 1e-6, y) != LinearStatus::done) return 0;
+    // With x^T M x = 1 the Rayleigh quotient of y = K^-1 M x is (y^T M x) / (y^T M y).
+    Vector My;
+    multiply(M, y, My);
+    const double before = square;
+    square = dot(y, Mx) / dot(y, My);
+    x = y;
+    if (std::abs(square - before) < 1e-4 * square) break;
+  }
+  return square > 0 && std::isfinite(square) ? 2 * std::numbers::pi / std::sqrt(square) : 0;
+}
+
+}  // namespace
+
+long count_unknowns(const Model& model, const Numbering& numbering, int step) {
+  const Supports supports =
+      make_supports(model.steps[static_cast<std::size_t>(step)], numbering, Vector::Zero(3 * numbering.nodes()));
+  return std::count(supports.fixed.begin(), supports.fixed.end(), 0);
+}
+
+double euler_loss_per_cycle(double period, double dt) {
+  const double w = 2 * std::numbers::pi * dt / period;
+  const double steps = 2 * std::numbers::pi / std::atan(w);
+  return 1 - std::pow(1 + w * w, -0.5 * steps);
+}
+
+Check check_answer(Run& run) {
+  const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
+  const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+  Check check;
+  const bool good = run.outcome.stop == Stop::converged || run.outcome.stop == Stop::interrupted;
+  if (good) check_balance(run, supports.fixed, check);
+  check_deformation(run, check);
+  if (run.model.settings.integrator != Integrator::static_ && good) {
+    check.lowest_period = lowest_period(run, supports.fixed);
+    if (run.model.settings.integrator == Integrator::implicit_euler && check.lowest_period > 0)
+      check.damped_per_cycle = euler_loss_per_cycle(check.lowest_period, step.dt);
+  }
+  return check;
+}
+
+}  // namespace msml::fe

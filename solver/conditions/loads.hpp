@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// External forces of one step: gravity, nodal forces, tractions, dead and follower pressure.
+#pragma once
+#include <vector>
+
+#include "solver/elements/assembly.hpp"
+
+namespace msml::fe {
+
+/// A face with a pressure that follows the deformed surface.
+struct FollowerFace {
+  int count = 3;      ///< nodes: 3 or 6
+  int nodes[6] = {};  ///< numbered nodes, counter-clockwise seen from outside
+  double pressure = 0;
+};
+
+/// Everything that pulls or pushes in one step.
+struct LoadSet {
+  Vector dead;  ///< 3 per numbered node: what does not depend on the displacement
+  std::vector<FollowerFace> followers;
+};
+
+/// `mass` is the matrix of the equations of motion: gravity is M g, so that a free body falls without deforming.
+/// Throws Error where a force acts on a node that belongs to no element.
+LoadSet make_loads(const Model& model, const Step& step, const Numbering& numbering, const ScalarMatrix& mass);
+
+/// force += scale * follower forces at positions X + u: f_a = -p int N_a (x,r cross x,s) dr ds. If matrix is given,
+/// adds scale * (-df/du), its symmetric part only: the whole is symmetric where the pressure is uniform and the rim of
+/// the loaded surface is held or closed (Schweizerhof and Ramm 1984, doi 10.1016/0045-7949(84)90174-0). Elsewhere
+/// Newton's method still solves the true equations, with slower convergence.
+void add_followers(const LoadSet& loads, double scale, const Vector& X, const Vector& u, Vector& force,
+                   BlockMatrix* matrix);
+
+}  // namespace msml::fe

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which unknowns a step fixes, and to what.
+#pragma once
+#include "solver/elements/assembly.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace msml::fe {
+
+/// The fixed unknowns of a step: values at its start and end. 3 per numbered node.
+struct Supports {
+  Mask fixed;
+  Vector start, end;
+  Mask ramped;  ///< reached linearly over the step; the others at once
+  /// Values at a share of the step in (0, 1]; entries of free unknowns are 0.
+  Vector at(double share) const;
+};
+
+/// `u` is the displacement at the start of the step. Where two conditions fix one unknown, the later wins. Nodes that
+/// belong to no element are passed over.
+Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u);
+
+}  // namespace msml::fe

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Rigid motions of each connected part against the supports.
+#include "solver/conditions/rigid.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <numeric>
+
+#include "msml/core/error.hpp"
+
+namespace msml::fe {
+namespace {
+
+/// For each point the smallest point id of its connected part, or -1 where it belongs to no element.
+std::vector<int> connected_parts(const Model& model) {
+  std::vector<int> parent(static_cast<std::size_t>(model.mesh->point_count()), -1);
+  const auto root_of = [&](int n) {
+    while (parent[static_cast<std::size_t>(n)] != n) {
+      int& up = parent[static_cast<std::size_t>(n)];
+      up = parent[static_cast<std::size_t>(up)];
+      n = up;
+    }
+    return n;
+  };
+  for (const Region& region : model.regions)
+    for (const int e : region.elements) {
+      const int* nodes = model.mesh->cell(e);
+      const int count = node_count(model.mesh->kinds[static_cast<std::size_t>(e)]);
+      for (int a = 0; a < count; ++a)
+        if (parent[static_cast<std::size_t>(nodes[a])] < 0) parent[static_cast<std::size_t>(nodes[a])] = nodes[a];
+      for (int a = 1; a < count; ++a) {
+        const int one = root_of(nodes[0]), two = root_of(nodes[a]);
+        parent[static_cast<std::size_t>(std::max(one, two))] = std::min(one, two);
+      }
+    }
+  for (std::size_t n = 0; n < parent.size(); ++n)
+    if (parent[n] >= 0) parent[n] = root_of(static_cast<int>(n));
+  return parent;
+}
+
+struct Part {
+  int points = 0;
+  Vec3 centre = Vec3::Zero();
+  double radius = 0;
+  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();  ///< sum of c c^T, c = motion of one support
+};
+
+std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_of) {
+  std::vector<Part> parts(part_of.size());
+  for (std::size_t n = 0; n < part_of.size(); ++n) {
+    if (part_of[n] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(part_of[n])];
+    ++part.points;
+    part.centre += mesh.points.row(static_cast<Eigen::Index>(n)).transpose();
+  }
+  for (Part& part : parts)
+    if (part.points > 0) part.centre /= part.points;
+  for (std::size_t n = 0; n < part_of.size(); ++n) {
+    if (part_of[n] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(part_of[n])];
+    part.radius =
+        std::max(part.radius, (mesh.points.row(static_cast<Eigen::Index>(n)).transpose() - part.centre).norm());
+  }
+  return parts;
+}
+
+}  // namespace
+
+void check_held(const Model& model, const Step& step) {
+  const Mesh& mesh = *model.mesh;
+  const std::vector<int> part_of = connected_parts(model);
+  std::vector<Part> parts = measure_parts(mesh, part_of);
+  for (const Prescribed& condition : step.prescribed)
+    for (const int node : condition.nodes) {
+      const int id = part_of[static_cast<std::size_t>(node)];
+      if (id < 0) continue;
+      Part& part = parts[static_cast<std::size_t>(id)];
+      const Vec3 arm = (mesh.points.row(node).transpose() - part.centre) / part.radius;
+      for (int c = 0; c < 3; ++c) {
+        if (!condition.components[c]) continue;
+        // The support sees translation e_c and rotation w as e_c . (w x arm) = w . (arm x e_c).
+        Eigen::Matrix<double, 6, 1> row;
+        row << Vec3::Unit(c), arm.cross(Vec3::Unit(c));
+        part.gram += row * row.transpose();
+      }
+    }
+  for (const Part& part : parts) {
+    if (part.points == 0) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(part.gram, Eigen::EigenvaluesOnly);
+    const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
+    const auto free = (solver.eigenvalues().array() < 1e-12 * largest).count();
+    if (free > 0)
+      throw Error(
+          fmt::format("step '{}' is static, but {} of the 6 rigid motions of the part of {} nodes around "
+                      "({:g} {:g} {:g}) are free: hold it, or choose a dynamic timeIntegration",
+                      step.name, free, part.points, part.centre[0], part.centre[1], part.centre[2]));
+  }
+}
+
+}  // namespace msml::fe

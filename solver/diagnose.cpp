@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Says in plain words why a run stopped and what to try.
+#include <fmt/format.h>
+
+#include "solver/integrators/stepper.hpp"
+
+namespace msml::fe {
+namespace {
+
+std::string advice(const Run& run, Stop stop) {
+  const bool is_static = run.model.settings.integrator == Integrator::static_;
+  const std::string smaller = is_static ? "more loadSteps, or smaller loads" : "a smaller dt";
+  switch (stop) {
+    case Stop::newton_limit:
+      return "try " + smaller + ", or more newtonIterations";
+    case Stop::diverged:
+      return "try " + smaller + "; check units, loads and material stiffness";
+    case Stop::inverted_element:
+      return "try " + smaller + ", a finer or better mesh at that element, or a stiffer material";
+    case Stop::indefinite_tangent:
+      return "the body buckles or the equilibrium is unstable: try smaller loads, or a dynamic timeIntegration";
+    case Stop::linear_solver_limit:
+      return "try linearSolver=\"direct\", another preconditioner, a better mesh or poissonRatio further from 0.5";
+    case Stop::singular:
+      return "a part of the body can move freely: fix it, or join parts that touch only at a node or an edge";
+    case Stop::out_of_memory:
+      return "try linearSolver=\"CG\" or a coarser mesh";
+    default:
+      return "";
+  }
+}
+
+std::string residual_text(const IncrementResult& result) {
+  if (result.residuals.empty()) return "none";
+  std::string text;
+  for (const double r : result.residuals) text += fmt::format("{}{:.2e}", text.empty() ? "" : " ", r);
+  return text + fmt::format(" (forces are of the size {:.2e})", result.scale);
+}
+
+std::string element_text(const Run& run, const IncrementResult& result) {
+  if (result.worst_element < 0) return "";
+  const Mesh& mesh = *run.model.mesh;
+  const int* nodes = mesh.cell(result.worst_element);
+  Vec3 centre = Vec3::Zero();
+  for (int a = 0; a < 4; ++a) centre += 0.25 * mesh.points.row(nodes[a]).transpose();
+  return fmt::format("; worst element {} at ({:g} {:g} {:g}), det F = {:g}", result.worst_element, centre[0], centre[1],
+                     centre[2], result.worst_J);
+}
+
+std::string node_text(const Run& run, const IncrementResult& result) {
+  if (result.worst_node < 0) return "";
+  const auto x = run.model.mesh->points.row(result.worst_node);
+  return fmt::format("; largest residual at node {} at ({:g} {:g} {:g})", result.worst_node, x[0], x[1], x[2]);
+}
+
+}  // namespace
+
+void explain(Run& run, const IncrementResult& result, double share) {
+  const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
+  const std::string when = share >= 0 ? fmt::format("at {:.4g} of the loads", share)
+                                      : fmt::format("in increment {}, from time {:g} with dt = {:g}",
+                                                    run.now.increment + 1, run.now.time, step.dt);
+  run.residuals = result.residuals;
+  run.outcome.stop = result.stop;
+  run.outcome.diagnosis = fmt::format("step {} '{}' stopped {}: {}; residuals {}{}{}; {}", run.now.step + 1, step.name,
+                                      when, name(result.stop), residual_text(result), element_text(run, result),
+                                      node_text(run, result), advice(run, result.stop));
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// All elements of a model, ready for assembly: batches of eight, coloured chunks, precomputed positions.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "solver/block_matrix.hpp"
+#include "solver/materials/law.hpp"
+#include "solver/model.hpp"
+
+namespace msml::fe {
+
+/// The elements that carry unknowns, and the numbering of the nodes they use. Nodes are renumbered along a
+/// space-filling curve, so that neighbours lie close in memory.
+struct Numbering {
+  CellKind kind = CellKind::tet4;
+  std::vector<int> elements;       ///< cell ids, by region, then along the curve
+  std::vector<int> region_of;      ///< region of each of `elements`
+  std::vector<int> node_of;        ///< mesh point of each numbered node
+  std::vector<int> number_of;      ///< number of each mesh point, -1 without unknowns
+  std::vector<int> element_nodes;  ///< numbers of the nodes of `elements`, element after element
+  int nodes() const { return static_cast<int>(node_of.size()); }
+};
+Numbering number(const Model& model);
+
+/// #points x 3 of the mesh from 3 numbers per numbered node (zero elsewhere), and back.
+Points to_points(const Numbering& numbering, const Vector& values);
+Vector to_vector(const Numbering& numbering, const Points& values);
+
+/// What an assembly found on its way.
+struct Assembled {
+  double energy = 0;                                            ///< elastic energy
+  double smallest_J = std::numeric_limits<double>::infinity();  ///< det F over all quadrature points
+  int smallest_J_element = -1;                                  ///< cell id
+  bool finite = true;                                           ///< false if a stress is NaN or infinite
+};
+
+/// Quadrature point values of one element, for results.
+struct ElementPoints {
+  int count = 0;
+  double weight[4];    ///< reference volume of the point
+  Gradients gradient;  ///< lane k: displacement gradient of point k
+};
+
+/// Elements of one kind. Sums are added in an order fixed by the mesh alone: results are equal bit for bit for every
+/// number of threads. Elements of a chunk are added by one thread; chunks of one colour share no node.
+class Elements {
+ public:
+  virtual ~Elements() = default;
+  /// force += internal force; matrix (if not null) += tangent as `want` says.
+  virtual Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const = 0;
+  /// mass += consistent (or lumped) mass with the regions' densities.
+  virtual void add_mass(bool lumped, ScalarMatrix& mass) const = 0;
+  /// Displacement gradients of every element of numbering().elements, in that order.
+  virtual std::vector<ElementPoints> points(const Vector& u) const = 0;
+  virtual const Numbering& numbering() const = 0;
+  virtual const PatternPtr& pattern() const = 0;
+};
+
+/// Prepares the elements of a checked model. Keeps a copy of what it needs.
+std::unique_ptr<Elements> make_elements(const Model& model);
+
+}  // namespace msml::fe

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Element mass matrices.
+#pragma once
+#include "solver/elements/shapes.hpp"
+
+namespace msml::fe {
+
+/// One number per pair of nodes, the same for x, y and z: int rho N_a N_b dV.
+template <int nodes>
+using ElementMass = Eigen::Matrix<double, nodes, nodes>;
+
+/// Consistent mass. Exact: degree 2 for tet4; for tet10 degree 4, times up to 3 of a curved Jacobian.
+template <int nodes>
+ElementMass<nodes> consistent_mass(const Points& points, const int* ids, double density) {
+  static const Rule<3> rule = collapsed_tetrahedron_rule(nodes == 4 ? 2 : 4);
+  ElementMass<nodes> M = ElementMass<nodes>::Zero();
+  for (const auto& q : rule) {
+    const auto N = Tetrahedron<nodes>::values(q.xi);
+    const double w = density * q.weight * jacobian<nodes>(points, ids, q.xi).determinant();
+    for (int a = 0; a < nodes; ++a)
+      for (int b = 0; b < nodes; ++b) M(a, b) += w * N[a] * N[b];
+  }
+  return M;
+}
+
+/// Diagonal mass: the diagonal of the consistent matrix scaled to the element's mass. Positive for every element, and
+/// equal to the row sums for tet4 (Hinton, Rock and Zienkiewicz 1976, doi 10.1002/eqe.4290040305).
+template <int nodes>
+ElementMass<nodes> lumped_mass(const ElementMass<nodes>& consistent) {
+  ElementMass<nodes> M = ElementMass<nodes>::Zero();
+  M.diagonal() = consistent.diagonal() * (consistent.sum() / consistent.trace());
+  return M;
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Orders elements and nodes along a space-filling curve.
+#include <algorithm>
+#include <cstdint>
+
+#include "solver/elements/assembly.hpp"
+
+namespace msml::fe {
+namespace {
+
+/// Interleaves three 20-bit integers: position on the Z-order curve (Morton 1966).
+std::uint64_t interleave(std::uint32_t x, std::uint32_t y, std::uint32_t z) {
+  std::uint64_t code = 0;
+  for (int bit = 0; bit < 20; ++bit)
+    code |= (std::uint64_t(x >> bit & 1u) << (3 * bit)) | (std::uint64_t(y >> bit & 1u) << (3 * bit + 1)) |
+            (std::uint64_t(z >> bit & 1u) << (3 * bit + 2));
+  return code;
+}
+
+class Curve {
+ public:
+  explicit Curve(const Points& points)
+      : low_(points.colwise().minCoeff()),
+        scale_(((1 << 20) - 1) / std::max((points.colwise().maxCoeff() - low_).maxCoeff(), 1e-300)) {}
+  std::uint64_t at(const Eigen::RowVector3d& x) const {
+    const Eigen::RowVector3d s = (x - low_) * scale_;
+    return interleave(static_cast<std::uint32_t>(s[0]), static_cast<std::uint32_t>(s[1]),
+                      static_cast<std::uint32_t>(s[2]));
+  }
+
+ private:
+  Eigen::RowVector3d low_;
+  double scale_;
+};
+
+struct Keyed {
+  int region;
+  std::uint64_t code;
+  int id;
+  auto operator<=>(const Keyed&) const = default;
+};
+
+void order_elements(const Model& model, const Curve& curve, Numbering& numbering) {
+  const Mesh& mesh = *model.mesh;
+  std::vector<Keyed> keys;
+  for (std::size_t r = 0; r < model.regions.size(); ++r)
+    for (const int e : model.regions[r].elements) {
+      Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
+      for (int a = 0; a < 4; ++a) centre += 0.25 * mesh.points.row(mesh.cell(e)[a]);
+      keys.push_back({static_cast<int>(r), curve.at(centre), e});
+    }
+  std::sort(keys.begin(), keys.end());
+  for (const Keyed& key : keys) {
+    numbering.elements.push_back(key.id);
+    numbering.region_of.push_back(key.region);
+  }
+}
+
+}  // namespace
+
+Numbering number(const Model& model) {
+  const Mesh& mesh = *model.mesh;
+  const Curve curve(mesh.points);
+  Numbering numbering;
+  order_elements(model, curve, numbering);
+  numbering.kind = mesh.kinds[static_cast<std::size_t>(numbering.elements.front())];
+  const int nodes = node_count(numbering.kind);
+  numbering.number_of.assign(static_cast<std::size_t>(mesh.point_count()), -1);
+  std::vector<Keyed> keys;
+  for (const int e : numbering.elements)
+    for (int a = 0; a < nodes; ++a) {
+      const int point = mesh.cell(e)[a];
+      if (numbering.number_of[static_cast<std::size_t>(point)] == 0) continue;
+      numbering.number_of[static_cast<std::size_t>(point)] = 0;
+      keys.push_back({0, curve.at(mesh.points.row(point)), point});
+    }
+  std::sort(keys.begin(), keys.end());
+  for (const Keyed& key : keys) {
+    numbering.number_of[static_cast<std::size_t>(key.id)] = numbering.nodes();
+    numbering.node_of.push_back(key.id);
+  }
+  for (const int e : numbering.elements)
+    for (int a = 0; a < nodes; ++a)
+      numbering.element_nodes.push_back(numbering.number_of[static_cast<std::size_t>(mesh.cell(e)[a])]);
+  return numbering;
+}
+
+Points to_points(const Numbering& numbering, const Vector& values) {
+  Points points = Points::Zero(static_cast<Eigen::Index>(numbering.number_of.size()), 3);
+  for (int n = 0; n < numbering.nodes(); ++n)
+    points.row(numbering.node_of[static_cast<std::size_t>(n)]) = values.segment<3>(3 * n).transpose();
+  return points;
+}
+
+Vector to_vector(const Numbering& numbering, const Points& values) {
+  Vector vector(3 * numbering.nodes());
+  for (int n = 0; n < numbering.nodes(); ++n)
+    vector.segment<3>(3 * n) = values.row(numbering.node_of[static_cast<std::size_t>(n)]).transpose();
+  return vector;
+}
+
+}  // namespace msml::fe

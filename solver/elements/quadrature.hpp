@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Points and weights on the reference tetrahedron (volume 1/6) and the reference triangle (area 1/2).
+#pragma once
+#include <array>
+#include <vector>
+
+namespace msml::fe {
+
+/// One point of a rule: reference coordinates and weight.
+template <int dimension>
+struct QuadraturePoint {
+  std::array<double, dimension> xi;
+  double weight;
+};
+
+template <int dimension>
+using Rule = std::vector<QuadraturePoint<dimension>>;
+
+/// The centroid rule, exact to degree 1.
+Rule<3> one_point_rule();
+
+/// Four points with one barycentric coordinate (5 + 3 sqrt 5)/20, exact to degree 2 (Hammer, Marlowe and Stroud 1956,
+/// doi 10.1090/S0025-5718-1956-0086389-6).
+Rule<3> four_point_rule();
+
+/// n^3 points, exact to degree 2n - 1, all weights positive: Gauss-Jacobi rules on the collapsed cube (Stroud 1971,
+/// Approximate Calculation of Multiple Integrals, chapter 2). n >= 1.
+Rule<3> collapsed_tetrahedron_rule(int n);
+
+/// n^2 points on the triangle, exact to degree 2n - 1.
+Rule<2> collapsed_triangle_rule(int n);
+
+}  // namespace msml::fe

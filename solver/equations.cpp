@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Evaluates forces and tangents.
+#include "solver/equations.hpp"
+
+namespace msml::fe {
+
+Vector Kinematics::velocity_at(const Vector& u) const {
+  if (!dynamic()) return Vector::Zero(u.size());
+  Vector v = velocity_factor * (u - start) + velocity;
+  for (std::size_t k = 0; k < fixed.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (fixed[k]) v[i] = (u[i] - start[i]) / dt;
+  }
+  return v;
+}
+
+Vector Kinematics::acceleration_at(const Vector& u) const {
+  if (!dynamic()) return Vector::Zero(u.size());
+  Vector a = acceleration_factor * (u - start) + acceleration;
+  for (std::size_t k = 0; k < fixed.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (fixed[k]) a[i] = ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
+  }
+  return a;
+}
+
+Equations::Equations(const Model& model)
+    : settings_(model.settings),
+      elements_(make_elements(model)),
+      X_(to_vector(elements_->numbering(), model.mesh->points)),
+      mass_(elements_->pattern()) {
+  elements_->add_mass(settings_.lumped_mass && settings_.integrator != Integrator::static_, mass_);
+  for (const Region& region : model.regions)
+    if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
+  for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
+}
+
+double Equations::total_mass() const {
+  double sum = 0;
+  for (const double m : mass_.values) sum += m;
+  return sum;
+}
+
+void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces,
+                         BlockMatrix* tangent) const {
+  forces.internal = Vector::Zero(size());
+  forces.external = Vector::Zero(size());
+  if (tangent) tangent->set_zero();
+  forces.found = elements_->add_internal(u, want, forces.internal, tangent);
+  for (const auto& [set, scale] : loads) {
+    forces.external += scale * set->dead;
+    add_followers(*set, scale, X_, u, forces.external, tangent);
+  }
+}
+
+void Equations::evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0,
+                                Forces& forces) const {
+  multiply(mass_, acceleration, forces.inertia);
+  forces.damping = Vector::Zero(size());
+  Vector product;
+  if (settings_.damping_mass > 0) {
+    multiply(mass_, velocity, product);
+    forces.damping += settings_.damping_mass * product;
+  }
+  if (settings_.damping_stiffness > 0 && K0) {
+    multiply(*K0, velocity, product);
+    forces.damping += settings_.damping_stiffness * product;
+  }
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The discrete equations of motion: forces and matrices at given displacements.
+#pragma once
+#include <utility>
+
+#include "solver/conditions/loads.hpp"
+#include "solver/conditions/prescribed.hpp"
+#include "solver/elements/assembly.hpp"
+
+namespace msml::fe {
+
+/// Loads that act together, each with its share.
+using ScaledLoads = std::vector<std::pair<const LoadSet*, double>>;
+
+/// Velocity and acceleration as functions of the displacement at the end of a time step:
+/// v = velocity_factor (u - u0) + v0, a = acceleration_factor (u - u0) + a0. Statics has zero factors.
+struct Kinematics {
+  Vector start;  ///< u0
+  double acceleration_factor = 0, velocity_factor = 0;
+  Vector acceleration, velocity;  ///< a0, v0
+  Mask fixed;                     ///< unknowns that follow `fixed_…` instead: their motion is given
+  double dt = 0;                  ///< of fixed unknowns: v = (u - u0)/dt, a = (v - velocity_before)/dt
+  Vector velocity_before;
+  bool dynamic() const { return acceleration_factor > 0; }
+  Vector velocity_at(const Vector& u) const;
+  Vector acceleration_at(const Vector& u) const;
+};
+
+/// All forces at one state; the residual is external - internal - inertia - damping.
+struct Forces {
+  Vector external, internal, inertia, damping;
+  Assembled found;  ///< by the elements
+  Vector residual() const { return external - internal - inertia - damping; }
+};
+
+/// Model data in solver numbering. Throws nothing for a checked model but what make_loads throws.
+class Equations {
+ public:
+  explicit Equations(const Model& model);
+
+  const Elements& elements() const { return *elements_; }
+  const Numbering& numbering() const { return elements_->numbering(); }
+  int size() const { return 3 * numbering().nodes(); }
+  const Vector& positions() const { return X_; }  ///< reference positions, 3 per numbered node
+  const ScalarMatrix& mass() const { return mass_; }
+  const LoadSet& loads(int step) const { return loads_[static_cast<std::size_t>(step)]; }
+  double total_mass() const;
+  bool small_strain() const { return small_strain_; }  ///< true if every region's law is
+
+  /// Internal and external forces at u; if `tangent` is given, it becomes the derivative of internal - external.
+  void evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent) const;
+  /// Inertia and Rayleigh damping alpha M v + beta K0 v; `K0` may be null where beta = 0.
+  void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0, Forces& forces) const;
+
+ private:
+  const Settings settings_;
+  std::unique_ptr<Elements> elements_;
+  Vector X_;
+  ScalarMatrix mass_;
+  std::vector<LoadSet> loads_;
+  bool small_strain_ = true;
+};
+
+}  // namespace msml::fe

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sparse Cholesky factorisation by CHOLMOD: analysed once per set of fixed unknowns, refactored for new values.
+#include <cholmod.h>
+
+#include <cmath>
+#include <mutex>
+
+#include "solver/linear/linear_system.hpp"
+
+extern "C" void openblas_set_num_threads(int threads);
+
+namespace msml::fe {
+namespace {
+
+/// OpenBLAS has as many threads as asked for while an object lives, and one elsewhere. The setting belongs to the
+/// process, so one factorisation runs at a time.
+class BlasThreads {
+ public:
+  explicit BlasThreads(int threads) : lock_(mutex()) { openblas_set_num_threads(threads); }
+  ~BlasThreads() { openblas_set_num_threads(1); }
+  BlasThreads(const BlasThreads&) = delete;
+  BlasThreads& operator=(const BlasThreads&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one;
+    return one;
+  }
+  std::lock_guard<std::mutex> lock_;
+};
+
+class Cholesky final : public LinearSystem {
+ public:
+  explicit Cholesky(int threads) : threads_(threads) {
+    cholmod_start(&common_);
+    common_.print = 0;
+    common_.supernodal = CHOLMOD_SUPERNODAL;
+    common_.nmethods = 1;
+    common_.method[0].ordering = CHOLMOD_METIS;
+    common_.postorder = 1;
+  }
+  ~Cholesky() override {
+    release();
+    cholmod_finish(&common_);
+  }
+  Cholesky(const Cholesky&) = delete;
+  Cholesky& operator=(const Cholesky&) = delete;
+
+  LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
+    const BlasThreads blas(threads_);
+    matrix_ = &A;
+    if (!factor_ || fixed != fixed_) {
+      release();
+      fixed_ = fixed;
+      lower_ = lower_triangle(*A.pattern, fixed);
+      values_.resize(lower_.source.size());
+      if (lower_.size() == 0) return LinearStatus::done;
+      cholmod_sparse view = sparse();
+      factor_ = cholmod_analyze(&view, &common_);
+      if (!factor_) return failure();
+    }
+    lower_.gather(A, values_.data());
+    cholmod_sparse view = sparse();
+    cholmod_factorize(&view, factor_, &common_);
+    if (common_.status < 0) return failure();
+    if (common_.status == CHOLMOD_NOT_POSDEF) return LinearStatus::not_positive_definite;
+    return LinearStatus::done;
+  }
+
+  LinearStatus solve(const Vector& b, double tolerance, Vector& x) override {
+    x = Vector::Zero(b.size());
+    if (lower_.size() == 0) return LinearStatus::done;
+    const double target = norm(b);
+    if (target == 0) return LinearStatus::done;
+    Vector residual = b, product;
+    double before = target;
+    // Round-off grows with the condition number; refinement wins it back unless the matrix is singular.
+    for (int refinement = 0; refinement < 4; ++refinement) {
+      if (!correct(residual, x)) return LinearStatus::out_of_memory;
+      multiply(*matrix_, x, product);
+      residual = b - product;
+      const double now = norm(residual);
+      if (!std::isfinite(now)) return LinearStatus::singular;
+      if (now <= tolerance * target) return LinearStatus::done;
+      if (refinement > 0 && now > 0.5 * before) break;
+      before = now;
+    }
+    return norm(residual) <= 1e-4 * target ? LinearStatus::done : LinearStatus::singular;
+  }
+
+  std::size_t factor_bytes() const override {
+    return factor_ ? (factor_->is_super ? factor_->xsize : factor_->nzmax) * sizeof(double) : 0;
+  }
+
+ private:
+  double norm(const Vector& v) const {
+    double sum = 0;
+    for (const int k : lower_.unknown_of) sum += v[k] * v[k];
+    return std::sqrt(sum);
+  }
+
+  /// x += A^-1 residual on the free unknowns.
+  bool correct(const Vector& residual, Vector& x) {
+    const BlasThreads blas(threads_);
+    std::vector<double> right(static_cast<std::size_t>(lower_.size()));
+    for (std::size_t k = 0; k < right.size(); ++k) right[k] = residual[lower_.unknown_of[k]];
+    cholmod_dense view{};
+    view.nrow = view.nzmax = view.d = right.size();
+    view.ncol = 1;
+    view.x = right.data();
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    cholmod_dense* solution = cholmod_solve(CHOLMOD_A, factor_, &view, &common_);
+    if (!solution) return false;
+    const double* values = static_cast<const double*>(solution->x);
+    for (std::size_t k = 0; k < right.size(); ++k) x[lower_.unknown_of[k]] += values[k];
+    cholmod_free_dense(&solution, &common_);
+    return true;
+  }
+
+  cholmod_sparse sparse() {
+    cholmod_sparse view{};
+    view.nrow = view.ncol = static_cast<std::size_t>(lower_.size());
+    view.nzmax = values_.size();
+    view.p = lower_.starts.data();
+    view.i = lower_.rows.data();
+    view.x = values_.data();
+    view.stype = -1;
+    view.itype = CHOLMOD_INT;
+    view.xtype = CHOLMOD_REAL;
+    view.dtype = CHOLMOD_DOUBLE;
+    view.sorted = view.packed = 1;
+    return view;
+  }
+
+  LinearStatus failure() const {
+    return common_.status == CHOLMOD_OUT_OF_MEMORY || common_.status == CHOLMOD_TOO_LARGE ? LinearStatus::out_of_memory
+                                                                                          : LinearStatus::singular;
+  }
+
+  void release() {
+    if (factor_) cholmod_free_factor(&factor_, &common_);
+    factor_ = nullptr;
+  }
+
+  int threads_;
+  cholmod_common common_{};
+  cholmod_factor* factor_ = nullptr;
+  const BlockMatrix* matrix_ = nullptr;
+  Mask fixed_;
+  LowerTriangle lower_;
+  std::vector<double> values_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSystem> make_cholesky(int threads) { return std::make_unique<Cholesky>(threads); }
+
+}  // namespace msml::fe

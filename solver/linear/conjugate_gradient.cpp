@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Preconditioned conjugate gradients (Hestenes and Stiefel 1952, doi 10.6028/jres.049.044).
+#include <tbb/parallel_for.h>
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+
+#include "solver/linear/linear_system.hpp"
+
+namespace msml::fe {
+namespace {
+
+using Lower = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+
+template <class Body>
+void for_nodes(Eigen::Index nodes, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, nodes, 1024), [&](const auto& range) {
+    for (Eigen::Index n = range.begin(); n < range.end(); ++n) body(n);
+  });
+}
+
+class ConjugateGradient final : public LinearSystem {
+ public:
+  explicit ConjugateGradient(Preconditioner kind)
+      : kind_(kind == Preconditioner::automatic ? Preconditioner::block_jacobi : kind) {}
+
+  LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
+    matrix_ = &A;
+    if (fixed != fixed_) {
+      fixed_ = fixed;
+      if (kind_ == Preconditioner::incomplete_cholesky) lower_ = lower_triangle(*A.pattern, fixed);
+    }
+    if (kind_ == Preconditioner::incomplete_cholesky) return factor_incomplete(A);
+    return kind_ == Preconditioner::none ? LinearStatus::done : invert_diagonal(A);
+  }
+
+  LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
+    Vector b = right;
+    mask(b);
+    x = Vector::Zero(b.size());
+    const double target = tolerance * std::sqrt(dot(b, b));
+    long limit = std::clamp<long>(10 * b.size(), 1000, 50000);
+    Vector r = b;
+    double size = std::sqrt(dot(r, r));
+    // The recurrence drifts from the true residual: measure it, and start again from it where needed.
+    while (size > target) {
+      const LinearStatus status = iterate(r, target, limit, x);
+      multiply(*matrix_, x, r);
+      r = b - r;
+      mask(r);
+      const double before = size;
+      size = std::sqrt(dot(r, r));
+      if (status != LinearStatus::done) return size <= target ? LinearStatus::done : status;
+      if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
+      if (size > target && size > 0.5 * before) return LinearStatus::limit;
+    }
+    return LinearStatus::done;
+  }
+
+  std::size_t factor_bytes() const override {
+    return inverse_.size() * sizeof(double) +
+           static_cast<std::size_t>(incomplete_.matrixL().nonZeros()) * (sizeof(double) + sizeof(int));
+  }
+
+ private:
+  void mask(Vector& v) const {
+    for_nodes(v.size(), [&](Eigen::Index k) {
+      if (fixed_[static_cast<std::size_t>(k)]) v[k] = 0;
+    });
+  }
+
+  /// Solves A d = r from zero and adds d to x, until the recurrence says |residual| <= target.
+  LinearStatus iterate(Vector r, double target, long& limit, Vector& x) {
+    Vector z, q, p = Vector::Zero(r.size());
+    double rho_before = 1;
+    while (limit-- > 0) {
+      precondition(r, z);
+      const double rho = dot(r, z);
+      if (!(rho > 0)) return LinearStatus::not_positive_definite;
+      p = z + (rho / rho_before) * p;
+      rho_before = rho;
+      multiply(*matrix_, p, q);
+      mask(q);
+      const double curvature = dot(p, q);
+      if (!(curvature > 0)) return LinearStatus::not_positive_definite;
+      x += (rho / curvature) * p;
+      r -= (rho / curvature) * q;
+      ++iterations;
+      if (std::sqrt(dot(r, r)) <= target) return LinearStatus::done;
+    }
+    return LinearStatus::limit;
+  }
+
+  void precondition(const Vector& r, Vector& z) const {
+    if (kind_ == Preconditioner::none) {
+      z = r;
+    } else if (kind_ == Preconditioner::incomplete_cholesky) {
+      Vector compact(lower_.size());
+      for (int k = 0; k < lower_.size(); ++k) compact[k] = r[lower_.unknown_of[static_cast<std::size_t>(k)]];
+      const Vector solved = incomplete_.solve(compact);
+      z = Vector::Zero(r.size());
+      for (int k = 0; k < lower_.size(); ++k) z[lower_.unknown_of[static_cast<std::size_t>(k)]] = solved[k];
+    } else {
+      z.resize(r.size());
+      for_nodes(r.size() / 3, [&](Eigen::Index n) {
+        const double* m = inverse_.data() + 9 * n;
+        const double* v = r.data() + 3 * n;
+        for (int i = 0; i < 3; ++i) z[3 * n + i] = m[3 * i] * v[0] + m[3 * i + 1] * v[1] + m[3 * i + 2] * v[2];
+      });
+    }
+  }
+
+  LinearStatus factor_incomplete(const BlockMatrix& A) {
+    std::vector<double> values(lower_.source.size());
+    lower_.gather(A, values.data());
+    const Eigen::Map<const Lower> lower(lower_.size(), lower_.size(), static_cast<Eigen::Index>(values.size()),
+                                        lower_.starts.data(), lower_.rows.data(), values.data());
+    incomplete_.compute(Lower(lower));
+    return incomplete_.info() == Eigen::Success ? LinearStatus::done : LinearStatus::not_positive_definite;
+  }
+
+  /// Inverts the diagonal blocks (or their diagonals); fixed unknowns keep a unit row.
+  LinearStatus invert_diagonal(const BlockMatrix& A) {
+    using Block = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
+    const Pattern& pattern = *A.pattern;
+    inverse_.resize(9 * pattern.diagonal.size());
+    bool good = true;
+    for (std::size_t n = 0; n < pattern.diagonal.size(); ++n) {
+      Block block = Eigen::Map<const Block>(A.values.data() + 9 * static_cast<std::size_t>(pattern.diagonal[n]));
+      if (kind_ == Preconditioner::jacobi) block = Block(block.diagonal().asDiagonal());
+      for (int i = 0; i < 3; ++i)
+        if (fixed_[3 * n + static_cast<std::size_t>(i)]) {
+          block.row(i).setZero();
+          block.col(i).setZero();
+          block(i, i) = 1;
+        }
+      good = good && block(0, 0) > 0 && block.determinant() > 0;
+      Eigen::Map<Block>(inverse_.data() + 9 * n) = block.inverse();
+    }
+    return good ? LinearStatus::done : LinearStatus::not_positive_definite;
+  }
+
+  Preconditioner kind_;
+  const BlockMatrix* matrix_ = nullptr;
+  Mask fixed_;
+  LowerTriangle lower_;
+  std::vector<double> inverse_;  ///< 9 per node
+  Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>> incomplete_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner) {
+  return std::make_unique<ConjugateGradient>(preconditioner);
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Eliminates fixed unknowns and chooses a linear solver.
+#include "solver/linear/linear_system.hpp"
+
+#include <tbb/parallel_for.h>
+
+namespace msml::fe {
+
+LowerTriangle lower_triangle(const Pattern& pattern, const Mask& fixed) {
+  LowerTriangle lower;
+  std::vector<int> free_number(fixed.size(), -1);
+  for (std::size_t k = 0; k < fixed.size(); ++k)
+    if (!fixed[k]) {
+      free_number[k] = lower.size();
+      lower.unknown_of.push_back(static_cast<int>(k));
+    }
+  lower.starts.reserve(lower.unknown_of.size() + 1);
+  lower.starts.push_back(0);
+  for (const int unknown : lower.unknown_of) {
+    const int node = unknown / 3, i = unknown % 3;
+    // Row `unknown` of the symmetric matrix is its column.
+    for (int p = pattern.offsets[static_cast<std::size_t>(node)];
+         p < pattern.offsets[static_cast<std::size_t>(node) + 1]; ++p) {
+      const int other = pattern.columns[static_cast<std::size_t>(p)];
+      if (other < node) continue;
+      for (int j = other == node ? i : 0; j < 3; ++j) {
+        const int row = free_number[static_cast<std::size_t>(3 * other + j)];
+        if (row < 0) continue;
+        lower.rows.push_back(row);
+        lower.source.push_back(9 * static_cast<std::size_t>(p) + static_cast<std::size_t>(3 * i + j));
+      }
+    }
+    lower.starts.push_back(static_cast<int>(lower.rows.size()));
+  }
+  return lower;
+}
+
+void LowerTriangle::gather(const BlockMatrix& A, double* values) const {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, source.size(), 1 << 15),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t k = range.begin(); k < range.end(); ++k) values[k] = A.values[source[k]];
+                    });
+}
+
+std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns) {
+  constexpr long direct_limit = 600000;
+  const bool direct = settings.linear_solver == LinearSolver::direct ||
+                      (settings.linear_solver == LinearSolver::automatic && unknowns <= direct_limit);
+  if (direct) return make_cholesky(settings.threads);
+  return make_conjugate_gradient(settings.preconditioner);
+}
+
+}  // namespace msml::fe

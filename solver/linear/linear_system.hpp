@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Symmetric linear systems on the free unknowns of a block matrix.
+#pragma once
+#include <memory>
+#include <string>
+
+#include "solver/block_matrix.hpp"
+#include "solver/model.hpp"
+
+namespace msml::fe {
+
+/// fixed[k] != 0 marks an eliminated unknown (its value is known).
+using Mask = std::vector<char>;
+
+/// The lower triangle of the free part of a block matrix, by columns, as CHOLMOD and Eigen want it. `source[k]` is the
+/// place of entry k in BlockMatrix::values, so that new values are a gather.
+struct LowerTriangle {
+  std::vector<int> unknown_of;  ///< index of each free unknown among all 3 #nodes
+  std::vector<int> starts, rows;
+  std::vector<std::size_t> source;
+  int size() const { return static_cast<int>(unknown_of.size()); }
+  void gather(const BlockMatrix& A, double* values) const;
+};
+LowerTriangle lower_triangle(const Pattern& pattern, const Mask& fixed);
+
+enum class LinearStatus { done, not_positive_definite, singular, limit, out_of_memory };
+
+/// One way to solve A x = b with A symmetric positive definite on the free unknowns.
+class LinearSystem {
+ public:
+  virtual ~LinearSystem() = default;
+  /// Takes the matrix; must be called before solve and again when the values change. Analyses the pattern when the mask
+  /// differs from the one before. The matrix must outlive the calls of solve.
+  virtual LinearStatus factor(const BlockMatrix& A, const Mask& fixed) = 0;
+  /// x at free unknowns so that |b - A x| <= tolerance |b| there; 0 at the others.
+  virtual LinearStatus solve(const Vector& b, double tolerance, Vector& x) = 0;
+  virtual std::size_t factor_bytes() const = 0;
+  long iterations = 0;  ///< CG iterations so far, over all solves
+};
+
+std::unique_ptr<LinearSystem> make_cholesky(int threads);
+std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner);
+
+/// The system that the settings ask for. `automatic` factorises up to 600,000 unknowns and iterates above: there the
+/// factor of a tet10 mesh would pass about 16 GB.
+std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns);
+
+}  // namespace msml::fe

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numbers that travel eight abreast: the scalar of all loops over quadrature points.
+#pragma once
+#include <cmath>
+
+namespace msml::fe {
+
+/// Points handled at once. Eight doubles fill one AVX-512 register, two AVX2 registers, four SSE2 registers.
+inline constexpr int lanes = 8;
+
+/// `lanes` doubles with elementwise + - * / and comparison; x[i] is lane i.
+using Lanes = double __attribute__((vector_size(lanes * sizeof(double))));
+
+inline double root(double x) { return std::sqrt(x); }
+/// Elementwise square root.
+inline Lanes root(Lanes x) {
+  for (int i = 0; i < lanes; ++i) x[i] = std::sqrt(x[i]);
+  return x;
+}
+
+/// All lanes equal to x.
+inline Lanes lanes_of(double x) { return Lanes{} + x; }
+
+/// A 3 x 3 matrix of scalars T, row by row.
+template <class T>
+struct Tensor {
+  T c[9];
+  T& operator()(int i, int j) { return c[3 * i + j]; }
+  const T& operator()(int i, int j) const { return c[3 * i + j]; }
+};
+
+/// Cofactor matrix: cof(A) = det(A) A^-T.
+template <class T>
+Tensor<T> cofactor(const Tensor<T>& a) {
+  Tensor<T> b;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
+      b(i, j) = a(p, r) * a(q, s) - a(p, s) * a(q, r);
+    }
+  return b;
+}
+
+/// det(A) from A and its cofactor matrix.
+template <class T>
+T determinant(const Tensor<T>& a, const Tensor<T>& cof) {
+  return a(0, 0) * cof(0, 0) + a(0, 1) * cof(0, 1) + a(0, 2) * cof(0, 2);
+}
+
+template <class T>
+T determinant(const Tensor<T>& a) {
+  return determinant(a, cofactor(a));
+}
+
+/// Sum of the squares of all entries.
+template <class T>
+T square_sum(const Tensor<T>& a) {
+  T sum = a.c[0] * a.c[0];
+  for (int i = 1; i < 9; ++i) sum += a.c[i] * a.c[i];
+  return sum;
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The interface of a constitutive law: batches of points in, energies, stresses and tangents out.
+#pragma once
+#include <span>
+#include <string>
+
+#include "solver/materials/lanes.hpp"
+
+namespace msml::fe {
+
+/// Displacement gradient H = du/dX = F - I of eight points (H rather than F keeps small strains exact).
+using Gradients = Tensor<Lanes>;
+
+/// What a law gives for eight points, per reference volume.
+struct Response {
+  Lanes energy;       ///< W(F), with W(I) = 0
+  Tensor<Lanes> P;    ///< first Piola stress dW/dF
+  Lanes tangent[45];  ///< d2W/dF2, lower triangle by rows: entry (I, J), I >= J, at I(I+1)/2 + J; I = 3 i + k for F_ik
+};
+
+/// What of a Response is wanted; energy and stress always. `tangent` is the law's own choice for Newton's method,
+/// `single_tangent` its choice where each step has one linear solve, `definite_tangent` a positive semidefinite
+/// replacement for Newton steps where the exact one is indefinite.
+enum class Want { stress, tangent, single_tangent, definite_tangent };
+
+/// What one reads off a law for eight points.
+struct Measures {
+  Tensor<Lanes> cauchy;  ///< Cauchy stress
+  Tensor<Lanes> strain;  ///< the strain of the law
+  Lanes energy;
+};
+
+/// A hyperelastic material law. Immutable, so that threads share it. One virtual call serves a whole batch.
+class Law {
+ public:
+  virtual ~Law() = default;
+  /// Fills responses[i] from gradients[i]; both have the same length.
+  virtual void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const = 0;
+  /// Fills measures[i] from gradients[i].
+  virtual void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const = 0;
+  virtual std::string name() const = 0;                ///< the tag of the language
+  virtual double poisson_ratio() const = 0;            ///< of the small-strain limit
+  virtual double shear_modulus() const = 0;            ///< of the small-strain limit, stress
+  virtual bool small_strain() const { return false; }  ///< true if the law is linear in H and sees no rotation
+};
+
+}  // namespace msml::fe

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Refuses models that cannot be solved, in words for the person who wrote the scene.
+#include "solver/model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "msml/core/error.hpp"
+#include "solver/conditions/rigid.hpp"
+#include "solver/elements/shapes.hpp"
+#include "solver/materials/law.hpp"
+
+namespace msml::fe {
+namespace {
+
+bool is_tet(CellKind kind) { return kind == CellKind::tet4 || kind == CellKind::tet10; }
+
+Vec3 centre(const Mesh& mesh, int cell) {
+  Vec3 sum = Vec3::Zero();
+  for (int a = 0; a < 4; ++a) sum += 0.25 * mesh.points.row(mesh.cell(cell)[a]).transpose();
+  return sum;
+}
+
+std::string place(const Vec3& x) { return fmt::format("({:g} {:g} {:g})", x[0], x[1], x[2]); }
+
+void check_region(const Model& model, const Region& region, CellKind& kind, bool& known) {
+  const Mesh& mesh = *model.mesh;
+  if (!region.law) throw Error(fmt::format("region '{}' has no material law", region.name));
+  const bool dynamic = model.settings.integrator != Integrator::static_;
+  if (!std::isfinite(region.density) || region.density < 0 || (dynamic && region.density == 0))
+    throw Error(fmt::format("region '{}': massDensity = {} is not {}", region.name, region.density,
+                            dynamic ? "> 0, as a dynamic simulation needs" : ">= 0"));
+  for (const int e : region.elements) {
+    if (e < 0 || e >= mesh.cell_count())
+      throw Error(fmt::format("region '{}' names element {}, but the mesh has cells 0 to {}", region.name, e,
+                              mesh.cell_count() - 1));
+    const CellKind found = mesh.kinds[static_cast<std::size_t>(e)];
+    if (!is_tet(found))
+      throw Error(
+          fmt::format("region '{}' names cell {}, a {}; a material needs tet4 or tet10", region.name, e, name(found)));
+    if (known && found != kind)
+      throw Error(fmt::format("cell {} is a {}, others are {}: one mesh kind at a time", e, name(found), name(kind)));
+    kind = found;
+    known = true;
+  }
+}
+
+void check_regions(const Model& model) {
+  const Mesh& mesh = *model.mesh;
+  std::vector<const Region*> owner(mesh.kinds.size(), nullptr);
+  CellKind kind = CellKind::tet4;
+  bool known = false;
+  for (const Region& region : model.regions) {
+    check_region(model, region, kind, known);
+    for (const int e : region.elements) {
+      const Region*& other = owner[static_cast<std::size_t>(e)];
+      if (other)
+        throw Error(fmt::format("element {} at {} is in region '{}' and in region '{}'", e, place(centre(mesh, e)),
+                                other->name, region.name));
+      other = &region;
+    }
+  }
+  if (!known) throw Error("no region has an element: nothing to simulate");
+  int lost = 0, first = -1;
+  for (int e = 0; e < mesh.cell_count(); ++e)
+    if (is_tet(mesh.kinds[static_cast<std::size_t>(e)]) && !owner[static_cast<std::size_t>(e)] && lost++ == 0)
+      first = e;
+  if (lost > 0)
+    throw Error(fmt::format("{} tetrahedra are in no material region, the first is element {} at {}", lost, first,
+                            place(centre(mesh, first))));
+}
+
+/// Smallest det(dX/dxi) at the quadrature points and the corners, relative to the cube of the longest edge.
+template <int nodes>
+double reference_shape(const Mesh& mesh, int cell) {
+  const int* ids = mesh.cell(cell);
+  double longest = 0, smallest = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 4; ++a)
+    for (int b = 0; b < a; ++b) longest = std::max(longest, (mesh.points.row(ids[a]) - mesh.points.row(ids[b])).norm());
+  Rule<3> places = stiffness_rule<nodes>();
+  for (const auto& corner : {std::array<double, 3>{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+    places.push_back({corner, 0});
+  for (const auto& q : places) smallest = std::min(smallest, jacobian<nodes>(mesh.points, ids, q.xi).determinant());
+  return longest > 0 ? smallest / (longest * longest * longest) : 0;
+}
+
+void check_shapes(const Model& model) {
+  const Mesh& mesh = *model.mesh;
+  int bad = 0, worst = -1;
+  double smallest = 1e-12;  // flatter than this, the gradients have no correct digits left
+  for (const Region& region : model.regions)
+    for (const int e : region.elements) {
+      const double shape = mesh.kinds[static_cast<std::size_t>(e)] == CellKind::tet4 ? reference_shape<4>(mesh, e)
+                                                                                     : reference_shape<10>(mesh, e);
+      if (shape >= 1e-12) continue;
+      ++bad;
+      if (worst < 0 || shape < smallest) worst = e, smallest = shape;
+    }
+  if (bad > 0)
+    throw Error(
+        fmt::format("{} elements are inverted or flat in the reference mesh; the worst is element {} at {}: its "
+                    "Jacobian is {:g} times the cube of its longest edge",
+                    bad, worst, place(centre(mesh, worst)), smallest));
+}
+
+void check_positive(const char* what, double value, bool zero_allowed) {
+  if (!std::isfinite(value) || value < 0 || (!zero_allowed && value == 0))
+    throw Error(fmt::format("{} = {} is not {}", what, value, zero_allowed ? ">= 0" : "> 0"));
+}
+
+void check_settings(const Settings& s) {
+  check_positive("dampingRayleighRatioMass", s.damping_mass, true);
+  check_positive("dampingRayleighRatioStiffness", s.damping_stiffness, true);
+  check_positive("tolerance", s.tolerance, false);
+  check_positive("linearTolerance", s.linear_tolerance, false);
+  if (s.tolerance >= 1) throw Error(fmt::format("tolerance = {} is not in (0, 1)", s.tolerance));
+  if (s.linear_tolerance >= 1) throw Error(fmt::format("linearTolerance = {} is not in (0, 1)", s.linear_tolerance));
+  check_positive("newtonIterations", s.newton_iterations, false);
+  check_positive("loadSteps", s.load_steps, false);
+  check_positive("threads", s.threads, false);
+}
+
+void check_nodes(const Mesh& mesh, const char* what, const std::string& label, const std::vector<int>& nodes,
+                 const std::vector<Vec3>& values) {
+  for (const int n : nodes)
+    if (n < 0 || n >= mesh.point_count())
+      throw Error(
+          fmt::format("{} '{}' names node {}, but the mesh has nodes 0 to {}", what, label, n, mesh.point_count() - 1));
+  if (values.size() != 1 && values.size() != nodes.size())
+    throw Error(fmt::format("{} '{}' has {} values for {} nodes: one for all, or one each", what, label, values.size(),
+                            nodes.size()));
+  for (const Vec3& v : values)
+    if (!v.allFinite()) throw Error(fmt::format("{} '{}' has a value that is not finite: {}", what, label, place(v)));
+}
+
+void check_face_load(const Model& model, const FaceLoad& load) {
+  const Mesh& mesh = *model.mesh;
+  for (const Face& face : load.faces)
+    if (face.element < 0 || face.element >= mesh.cell_count() || face.local < 0 || face.local > 3 ||
+        !is_tet(mesh.kinds[static_cast<std::size_t>(face.element)]))
+      throw Error(fmt::format("load '{}' names face {} of cell {}, which is no face of a tetrahedron", load.name,
+                              face.local, face.element));
+  const std::size_t count = load.pressures.empty() ? load.tractions.size() : load.pressures.size();
+  if (!load.pressures.empty() && !load.tractions.empty())
+    throw Error(fmt::format("load '{}' has both pressures and tractions", load.name));
+  if (count != 1 && count != load.faces.size())
+    throw Error(fmt::format("load '{}' has {} values for {} faces: one for all, or one each", load.name, count,
+                            load.faces.size()));
+  for (const double p : load.pressures)
+    if (!std::isfinite(p)) throw Error(fmt::format("load '{}' has pressure {}", load.name, p));
+  for (const Vec3& t : load.tractions)
+    if (!t.allFinite()) throw Error(fmt::format("load '{}' has traction {}", load.name, place(t)));
+}
+
+void check_step(const Model& model, const Step& step) {
+  check_positive(("dt of step '" + step.name + "'").c_str(), step.dt, false);
+  check_positive(("iterations of step '" + step.name + "'").c_str(), step.count, false);
+  if (!step.gravity.allFinite())
+    throw Error(fmt::format("gravity of step '{}' is not finite: {}", step.name, place(step.gravity)));
+  for (const Prescribed& p : step.prescribed) check_nodes(*model.mesh, "constraint", p.name, p.nodes, p.values);
+  for (const NodalForce& f : step.forces) check_nodes(*model.mesh, "force", f.name, f.nodes, f.values);
+  for (const FaceLoad& load : step.face_loads) check_face_load(model, load);
+}
+
+}  // namespace
+
+void Model::check() const {
+  if (!mesh) throw Error("the model has no mesh");
+  mesh->check();
+  check_settings(settings);
+  check_regions(*this);
+  check_shapes(*this);
+  if (steps.empty()) throw Error("the simulation has no step");
+  for (const Step& step : steps) {
+    check_step(*this, step);
+    if (settings.integrator == Integrator::static_) check_held(*this, step);
+  }
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Newton's method with backtracking, for statics and for implicit time steps.
+#include "solver/newton.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace msml::fe {
+namespace {
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& total) : total_(total) {}
+  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& total_;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+Stop stop_of(LinearStatus status) {
+  switch (status) {
+    case LinearStatus::limit:
+      return Stop::linear_solver_limit;
+    case LinearStatus::not_positive_definite:
+      return Stop::indefinite_tangent;
+    case LinearStatus::out_of_memory:
+      return Stop::out_of_memory;
+    case LinearStatus::singular:
+      return Stop::singular;
+    case LinearStatus::done:
+      break;
+  }
+  return Stop::converged;
+}
+
+}  // namespace
+
+double free_norm(const Vector& v, const Mask& fixed) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < v.size(); ++k)
+    if (!fixed[static_cast<std::size_t>(k)]) sum += v[k] * v[k];
+  return std::sqrt(sum);
+}
+
+Newton::Newton(const Model& model, const Equations& equations)
+    : model_(model),
+      equations_(equations),
+      linear_(make_linear_system(model.settings, equations.size())),
+      tangent_(equations.elements().pattern()),
+      effective_(equations.elements().pattern()),
+      want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {}
+
+void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent) {
+  const Stopwatch watch(seconds_assembly_);
+  equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr);
+  equations_.evaluate_motion(increment.motion.velocity_at(u), increment.motion.acceleration_at(u),
+                             increment.damping_matrix, forces_);
+}
+
+void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
+  const Stopwatch watch(seconds_assembly_);
+  equations_.evaluate(u, loads, want_, forces_, &tangent_);
+  tangent_current_ = true;
+  // One part in 1e16 of the strain in each entry, times stiffness and element size.
+  const PatternPtr& pattern = tangent_.pattern;
+  const double size =
+      std::cbrt(model_.mesh->points.rows() > 0
+                    ? (model_.mesh->points.colwise().maxCoeff() - model_.mesh->points.colwise().minCoeff()).prod() /
+                          pattern->nodes()
+                    : 0.0);
+  double sum = 0;
+  for (const int p : pattern->diagonal)
+    for (int i = 0; i < 3; ++i) {
+      const double k = tangent_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)] * size;
+      sum += k * k;
+    }
+  round_off_ = equations_.small_strain() ? 0 : 4e-16 * std::sqrt(sum);
+}
+
+LinearStatus Newton::factor(const Increment& increment, const Vector& u) {
+  const Kinematics& motion = increment.motion;
+  const Settings& settings = model_.settings;
+  for (const bool definite : {false, true}) {
+    if (definite) {
+      evaluate(increment, u, Want::definite_tangent, true);
+      tangent_current_ = false;
+    }
+    const Stopwatch watch(seconds_linear_);
+    effective_.values = tangent_.values;
+    if (motion.dynamic()) {
+      add(effective_, motion.acceleration_factor + motion.velocity_factor * settings.damping_mass, equations_.mass());
+      if (increment.damping_matrix)
+        add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
+    }
+    const LinearStatus status = linear_->factor(effective_, increment.fixed);
+    if (!definite) indefinite_ = status == LinearStatus::not_positive_definite;
+    if (status != LinearStatus::not_positive_definite) return status;
+  }
+  return LinearStatus::singular;  // a semidefinite matrix without a factorisation
+}
+
+double Newton::line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u) {
+  const Vector start = u;
+  const double norm = free_norm(residual, increment.fixed), slope = dot(direction, residual);
+  double step = 1;
+  for (int trial = 0; trial < 12; ++trial) {
+    u = start + step * direction;
+    evaluate(increment, u, want_, false);
+    const Vector now = forces_.residual();
+    const double new_norm = free_norm(now, increment.fixed);
+    const double new_slope = dot(direction, now);
+    if (!forces_.found.finite || !std::isfinite(new_norm)) {
+      step *= 0.25;
+      continue;
+    }
+    // Either the residual shrinks, or the minimum along the direction is not overshot by much.
+    if (!model_.settings.line_search || new_norm <= norm || new_slope >= -0.8 * std::abs(slope)) return step;
+    step *= std::clamp(slope / (slope - new_slope), 0.1, 0.6);
+  }
+  return forces_.found.finite ? step : 0;
+}
+
+void Newton::note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const {
+  const double norm = free_norm(residual, increment.fixed), total = residual.norm();
+  result.residuals.push_back(norm);
+  const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
+  result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
+  result.worst_element = forces_.found.smallest_J_element;
+  result.worst_J = forces_.found.smallest_J;
+  double worst = -1;
+  for (Eigen::Index k = 0; k < residual.size(); ++k)
+    if (!increment.fixed[static_cast<std::size_t>(k)] && std::abs(residual[k]) > worst) {
+      worst = std::abs(residual[k]);
+      result.worst_node = equations_.numbering().node_of[static_cast<std::size_t>(k / 3)];
+    }
+}
+
+bool Newton::accepted(const IncrementResult& result, const Vector& residual) const {
+  const double norm = result.residuals.back();
+  return residual.allFinite() && norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
+}
+
+void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix) {
+  equations_.evaluate_motion(velocity, acceleration, damping_matrix, forces_);
+}
+
+void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations_.size()); }
+
+Stop Newton::state_verdict() const {
+  if (!forces_.found.finite) return Stop::diverged;
+  if (!equations_.small_strain() && forces_.found.smallest_J <= 0 && !model_.settings.allow_inverted)
+    return Stop::inverted_element;
+  return Stop::converged;
+}
+
+Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
+  const Stop state = state_verdict();
+  if (state != Stop::converged) return state;
+  if (increment.motion.dynamic() || equations_.small_strain() || model_.settings.newton_iterations == 1)
+    return Stop::converged;
+  if (result.residuals.size() <= 2 && want_ == Want::tangent && !indefinite_) {
+    // The last factorisation may be of a state far from this one.
+    evaluate(increment, result.u, want_, true);
+    const Stopwatch watch(seconds_linear_);
+    indefinite_ = linear_->factor(tangent_, increment.fixed) == LinearStatus::not_positive_definite;
+  }
+  return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
+}
+
+IncrementResult Newton::run(const Increment& increment) {
+  const int limit = model_.settings.newton_iterations;
+  IncrementResult result;
+  Vector& u = result.u = increment.start;
+  Vector jump = Vector::Zero(u.size());
+  for (Eigen::Index k = 0; k < u.size(); ++k)
+    if (increment.fixed[static_cast<std::size_t>(k)]) jump[k] = increment.target[k] - u[k];
+  if (!tangent_current_) prepare(u, increment.loads);
+  indefinite_ = false;
+  // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
+  equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
+                             increment.damping_matrix, forces_);
+  Vector residual = forces_.residual(), product, direction;
+  note_residual(increment, residual, result);
+  const bool moved = jump.squaredNorm() > 0;
+  if (!moved && limit > 1 && accepted(result, residual)) {
+    result.stop = verdict(increment, result);
+    return result;
+  }
+  for (int iteration = 0; iteration < limit; ++iteration) {
+    if (iteration > 0) evaluate(increment, u, want_, true);
+    ++iterations_;
+    LinearStatus status = factor(increment, u);
+    if (status != LinearStatus::done) return result.stop = stop_of(status), result;
+    if (iteration == 0 && moved) {
+      multiply(tangent_, jump, product);
+      residual -= product;
+    }
+    {
+      const Stopwatch watch(seconds_linear_);
+      ++solves_;
+      status = linear_->solve(residual, model_.settings.linear_tolerance, direction);
+    }
+    if (status != LinearStatus::done) return result.stop = stop_of(status), result;
+    tangent_current_ = false;
+    if (iteration == 0) u += jump;
+    if (limit == 1) {
+      u += direction;
+      return result;
+    }
+    if (iteration == 0 && moved) {
+      u += direction;
+      evaluate(increment, u, want_, false);
+    } else if (line_search(increment, direction, residual, u) == 0) {
+      return result.stop = Stop::diverged, result;
+    }
+    residual = forces_.residual();
+    note_residual(increment, residual, result);
+    if (accepted(result, residual)) return result.stop = verdict(increment, result), result;
+    if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
+      return result.stop = Stop::diverged, result;
+  }
+  result.stop = Stop::newton_limit;
+  return result;
+}
+
+Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed) {
+  prepare(u, loads);
+  equations_.evaluate_motion(v, Vector::Zero(u.size()), &tangent_, forces_);
+  BlockMatrix mass(tangent_.pattern);
+  add(mass, 1, equations_.mass());
+  const auto solver = make_conjugate_gradient(Preconditioner::jacobi);
+  Vector a = Vector::Zero(u.size());
+  if (solver->factor(mass, fixed) == LinearStatus::done) solver->solve(forces_.residual(), 1e-13, a);
+  forces_.inertia.setZero();
+  multiply(equations_.mass(), a, forces_.inertia);
+  return a;
+}
+
+void Newton::report(Outcome& outcome) const {
+  outcome.newton_iterations = iterations_;
+  outcome.linear_solves = solves_;
+  outcome.cg_iterations = linear_->iterations;
+  outcome.seconds_assembly = seconds_assembly_;
+  outcome.seconds_linear = seconds_linear_;
+  outcome.matrix_bytes = (tangent_.values.size() + effective_.values.size()) * sizeof(double) +
+                         tangent_.pattern->columns.size() * sizeof(int);
+  outcome.factor_bytes = linear_->factor_bytes();
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Newton's method for one increment of load or time.
+#pragma once
+#include "solver/equations.hpp"
+#include "solver/linear/linear_system.hpp"
+
+namespace msml::fe {
+
+/// What one increment asks for.
+struct Increment {
+  Vector start;  ///< displacement to start from
+  Mask fixed;
+  Vector target;  ///< displacement of fixed unknowns at the end
+  ScaledLoads loads;
+  Kinematics motion;
+  const BlockMatrix* damping_matrix = nullptr;  ///< K at the start of the step, for Rayleigh damping; null without
+};
+
+/// How it went.
+struct IncrementResult {
+  Stop stop = Stop::converged;
+  Vector u;                       ///< displacement at the end (or where it stopped)
+  std::vector<double> residuals;  ///< norm of the free residual after each iteration, the first before any
+  double scale = 0;               ///< largest of the norms of external, internal, inertia and reaction forces
+  int worst_element = -1;         ///< cell id: the smallest det F
+  double worst_J = 0;
+  int worst_node = -1;  ///< mesh point with the largest residual
+};
+
+/// Work space and statistics of all increments of a run.
+class Newton {
+ public:
+  Newton(const Model& model, const Equations& equations);
+
+  /// Runs up to Settings::newton_iterations iterations; with 1, one linear solve and no convergence test.
+  /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one. A
+  /// static state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
+  IncrementResult run(const Increment& increment);
+
+  /// Forces and tangent at u for the next increment, with the tangent that increments start from.
+  void prepare(const Vector& u, const ScaledLoads& loads);
+  /// Adds inertia and damping to the forces, or none.
+  void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix);
+  void rest();
+  /// converged, or what is wrong with the state evaluated last: not finite, or an inverted element.
+  Stop state_verdict() const;
+  /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
+  Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed);
+  const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
+  const BlockMatrix& tangent() const { return tangent_; }
+  LinearSystem& linear() { return *linear_; }
+  /// Copies counts and times.
+  void report(Outcome& outcome) const;
+
+ private:
+  LinearStatus factor(const Increment& increment, const Vector& u);
+  void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
+  double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
+  bool accepted(const IncrementResult& result, const Vector& residual) const;
+  void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
+  Stop verdict(const Increment& increment, IncrementResult& result);
+
+  const Model& model_;
+  const Equations& equations_;
+  std::unique_ptr<LinearSystem> linear_;
+  BlockMatrix tangent_, effective_;
+  Forces forces_;
+  Want want_;
+  bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from
+  bool indefinite_ = false;       ///< the last exact tangent could not be factorised
+  double round_off_ = 0;          ///< norm of the residual that round-off in the strains alone can leave
+  int iterations_ = 0, solves_ = 0;
+  double seconds_assembly_ = 0, seconds_linear_ = 0;
+};
+
+/// Norm over the free unknowns.
+double free_norm(const Vector& v, const Mask& fixed);
+
+}  // namespace msml::fe

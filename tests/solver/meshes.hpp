@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Small structured meshes and models for the solver's tests.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "solver/materials/linear_elastic.hpp"
+#include "solver/model.hpp"
+
+namespace msml::fe::testing {
+
+/// Grid of nx x ny x nz unit cubes, each cut into six tetrahedra that share the diagonal from low to high corner.
+/// `place` maps grid coordinates (i/nx, j/ny, k/nz) to positions; it must keep the orientation.
+inline Mesh grid_mesh(int nx, int ny, int nz, CellKind kind, const std::function<Vec3(double, double, double)>& place) {
+  // A quadratic mesh is a linear one on half steps: mid nodes sit on the doubled grid and are placed like corners.
+  const int f = kind == CellKind::tet10 ? 2 : 1;
+  const auto id = [&](std::array<int, 3> g) { return (g[0] * (f * ny + 1) + g[1]) * (f * nz + 1) + g[2]; };
+  Mesh mesh;
+  mesh.points.resize((f * nx + 1) * (f * ny + 1) * (f * nz + 1), 3);
+  for (int i = 0; i <= f * nx; ++i)
+    for (int j = 0; j <= f * ny; ++j)
+      for (int k = 0; k <= f * nz; ++k)
+        mesh.points.row(id({i, j, k})) = place(i / double(f * nx), j / double(f * ny), k / double(f * nz)).transpose();
+  const std::array<std::array<int, 3>, 6> orders{{{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};
+  const std::array<bool, 6> even{true, false, false, true, true, false};
+  const std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (int k = 0; k < nz; ++k)
+        for (std::size_t o = 0; o < 6; ++o) {
+          std::array<std::array<int, 3>, 4> corner;
+          corner[0] = {f * i, f * j, f * k};
+          for (int step = 0; step < 3; ++step) {
+            corner[step + 1] = corner[step];
+            corner[step + 1][orders[o][step]] += f;
+          }
+          if (!even[o]) std::swap(corner[1], corner[2]);
+          std::vector<int> nodes;
+          for (const auto& c : corner) nodes.push_back(id(c));
+          if (f == 2)
+            for (const auto& e : edges)
+              nodes.push_back(id({(corner[e[0]][0] + corner[e[1]][0]) / 2, (corner[e[0]][1] + corner[e[1]][1]) / 2,
+                                  (corner[e[0]][2] + corner[e[1]][2]) / 2}));
+          mesh.add_cell(kind, nodes.data());
+        }
+  return mesh;
+}
+
+/// Box [0,a] x [0,b] x [0,c]; mid nodes of tet10 on straight edges.
+inline Mesh box_mesh(int nx, int ny, int nz, Vec3 size, CellKind kind) {
+  return grid_mesh(nx, ny, nz, kind,
+                   [&](double x, double y, double z) { return Vec3(x * size[0], y * size[1], z * size[2]); });
+}
+
+/// Ids of the points that pass a test.
+inline std::vector<int> points_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& test) {
+  std::vector<int> found;
+  for (int n = 0; n < mesh.point_count(); ++n)
+    if (test(mesh.points.row(n).transpose())) found.push_back(n);
+  return found;
+}
+
+inline int nearest_point(const Mesh& mesh, const Vec3& x) {
+  Eigen::Index row;
+  (mesh.points.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff(&row);
+  return static_cast<int>(row);
+}
+
+/// Faces that belong to one element only and whose corners all pass the test.
+inline std::vector<Face> faces_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& test) {
+  std::map<std::array<int, 3>, std::vector<Face>> seen;
+  for (int e = 0; e < mesh.cell_count(); ++e)
+    for (int local = 0; local < 4; ++local) {
+      std::array<int, 3> key;
+      bool inside = true;
+      for (std::size_t a = 0; a < 3; ++a) {
+        key[a] = mesh.cell(e)[tet_faces[static_cast<std::size_t>(local)][a]];
+        inside = inside && test(mesh.points.row(key[a]).transpose());
+      }
+      if (!inside) continue;
+      std::sort(key.begin(), key.end());
+      seen[key].push_back({e, local});
+    }
+  std::vector<Face> faces;
+  for (const auto& [key, list] : seen)
+    if (list.size() == 1) faces.push_back(list.front());
+  return faces;
+}
+
+inline Prescribed fix(std::vector<int> nodes, bool x = true, bool y = true, bool z = true) {
+  Prescribed p{.name = "fixed", .nodes = std::move(nodes), .values = {Vec3::Zero()}, .ramp = Ramp::step};
+  p.components[0] = x, p.components[1] = y, p.components[2] = z;
+  return p;
+}
+
+/// One region with all cells, one step without loads.
+inline Model make_model(Mesh mesh, const LinearElastic& material, double density = 1) {
+  Model model;
+  Region region{.name = "body", .law = make_linear_elastic(material), .density = density};
+  for (int e = 0; e < mesh.cell_count(); ++e) region.elements.push_back(e);
+  model.mesh = std::make_shared<const Mesh>(std::move(mesh));
+  model.regions.push_back(std::move(region));
+  model.steps.push_back({.name = "load", .dt = 1, .count = 1, .gravity = Vec3::Zero()});
+  model.settings.integrator = Integrator::static_;
+  return model;
+}
+
+/// The cantilever of the comparison with other programs: 0.1 x 0.02 x 0.02 m, 5n x n x n cubes, clamped at x = 0.
+inline Model beam_model(int n, CellKind kind, double poisson_ratio, Strain strain) {
+  Model model = make_model(box_mesh(5 * n, n, n, {0.1, 0.02, 0.02}, kind),
+                           {.youngs_modulus = 1e5, .poisson_ratio = poisson_ratio, .strain = strain}, 1000);
+  model.steps[0].gravity = Vec3(0, 0, -9.81);
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+  return model;
+}
+
+inline Vec3 tip(const Model& model, const State& state) {
+  return state.displacement.row(nearest_point(*model.mesh, {0.1, 0.01, 0.01})).transpose();
+}
+
+}  // namespace msml::fe::testing
