@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The part of CGAL Mesh_3 that both volume meshers run: seeds, refinement, smoothing, and the way back to a Mesh.
+// Included by the two meshing cores only; it takes long to compile.
+#pragma once
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/Random.h>
+#include <CGAL/exude_mesh_3.h>
+#include <CGAL/lloyd_optimize_mesh_3.h>
+#include <CGAL/make_mesh_3.h>
+#include <CGAL/odt_optimize_mesh_3.h>
+#include <CGAL/perturb_mesh_3.h>
+#include <CGAL/refine_mesh_3.h>
+
+#include <unordered_map>
+
+#include "operators/cgal_meshing.hpp"
+
+namespace msml::operators::refine {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+/// Criteria that decide as CGAL's do, and tell a watcher every few thousand decisions how far the mesh has grown.
+template <class Tr, class Base>
+class Watched : public Base {
+ public:
+  Watched(Base base, Watcher watcher) : Base(std::move(base)), watcher_(std::move(watcher)) {}
+  template <class Simplex>
+  auto operator()(const Tr& tr, const Simplex& simplex) const {
+    if (watcher_ && ++*calls_ % 8192 == 0) watcher_(tr.number_of_vertices());
+    return Base::operator()(tr, simplex);
+  }
+
+ private:
+  Watcher watcher_;
+  std::shared_ptr<std::size_t> calls_ = std::make_shared<std::size_t>(0);
+};
+
+template <class Tr>
+using Cells = Watched<Tr, CGAL::Mesh_cell_criteria_3<Tr>>;
+template <class Tr>
+using Facets = Watched<Tr, CGAL::Mesh_facet_criteria_3<Tr>>;
+template <class Tr>
+using Criteria = CGAL::Mesh_criteria_3<Tr, CGAL::Mesh_edge_criteria_3<Tr>, Facets<Tr>, Cells<Tr>>;
+
+template <class Tr>
+Criteria<Tr> criteria(const MeshingSettings& s, const Watcher& watcher) {
+  return Criteria<Tr>(
+      CGAL::Mesh_edge_criteria_3<Tr>(s.facet_size),
+      Facets<Tr>(CGAL::Mesh_facet_criteria_3<Tr>(s.facet_angle, s.facet_size, s.facet_distance), watcher),
+      Cells<Tr>(CGAL::Mesh_cell_criteria_3<Tr>(s.radius_edge, s.cell_size), watcher));
+}
+
+/// True if a vertex is nearer than `clear`, or protects a sharp edge with a ball around the point.
+template <class Tr, class Point>
+bool taken(const Tr& tr, const Point& point, double clear) {
+  if (tr.number_of_vertices() == 0) return false;
+  const auto nearest = tr.nearest_power_vertex(point);
+  const auto& weighted = tr.point(nearest);
+  return CGAL::squared_distance(weighted.point(), point) - weighted.weight() <= clear * clear;
+}
+
+/// Inserts the points where the seeds cross the surface of the domain; returns how many.
+template <class C3t3, class Domain>
+std::size_t insert_seeds(C3t3& c3t3, const Domain& domain, const std::vector<Seed>& seeds) {
+  using Point = typename C3t3::Triangulation::Bare_point;
+  using Weighted = typename C3t3::Triangulation::Weighted_point;
+  const auto crossing = domain.construct_intersection_object();
+  std::size_t inserted = 0;
+  for (const Seed& seed : seeds) {
+    const Point from(seed.from.x(), seed.from.y(), seed.from.z()), to(seed.to.x(), seed.to.y(), seed.to.z());
+    const auto found = crossing(typename Domain::Segment_3(from, to));
+    if (std::get<2>(found) == 0 || taken(c3t3.triangulation(), std::get<0>(found), seed.clear)) continue;
+    const auto vertex = c3t3.triangulation().insert(Weighted(std::get<0>(found)));
+    if (vertex == typename C3t3::Triangulation::Vertex_handle()) continue;
+    c3t3.set_dimension(vertex, 2);
+    c3t3.set_index(vertex, std::get<1>(found));
+    ++inserted;
+  }
+  return inserted;
+}
+
+/// Refines from what the complex already holds, then runs the passes that the settings ask for.
+template <class C3t3, class Domain, class MeshCriteria>
+void refine_and_improve(C3t3& c3t3, const Domain& domain, const MeshCriteria& mesh_criteria, const MeshingSettings& s,
+                        const Announcer& announce) {
+  namespace p = CGAL::parameters;
+  constexpr int smoothing_sweeps = 100;
+  announce("refining");
+  CGAL::refine_mesh_3(c3t3, domain, mesh_criteria, p::no_reset_c3t3(), p::no_odt(), p::no_lloyd(), p::no_perturb(),
+                      p::no_exude());
+  if (s.odt) {
+    announce("odt");
+    CGAL::odt_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
+  }
+  if (s.lloyd) {
+    announce("lloyd");
+    CGAL::lloyd_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
+  }
+  if (s.perturb) {
+    announce("perturbing");
+    CGAL::perturb_mesh_3(c3t3, domain);
+  }
+  if (s.exude) {
+    announce("exuding");
+    CGAL::exude_mesh_3(c3t3);
+  }
+}
+
+/// The tetrahedra of the complex with the points they use; regions are subdomain indices.
+template <class C3t3>
+Mesh mesh_of(const C3t3& c3t3) {
+  Mesh mesh;
+  std::unordered_map<const void*, int> ids;
+  std::vector<double> coordinates;
+  for (auto cell = c3t3.cells_in_complex_begin(); cell != c3t3.cells_in_complex_end(); ++cell) {
+    std::array<int, 4> corners;
+    for (int i = 0; i < 4; ++i) {
+      const auto vertex = cell->vertex(i);
+      const auto [entry, fresh] = ids.try_emplace(&*vertex, static_cast<int>(ids.size()));
+      corners[static_cast<std::size_t>(i)] = entry->second;
+      if (!fresh) continue;
+      const auto& point = c3t3.triangulation().point(vertex);
+      coordinates.insert(coordinates.end(), {point.x(), point.y(), point.z()});
+    }
+    mesh.add_cell(CellKind::tet4, corners.data(), static_cast<int>(c3t3.subdomain_index(cell)));
+  }
+  mesh.points = Eigen::Map<const Points>(coordinates.data(), static_cast<Eigen::Index>(ids.size()), 3);
+  return mesh;
+}
+
+}  // namespace msml::operators::refine

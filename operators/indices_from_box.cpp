@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// ComputeIndicesFromBoxROI: points, elements or surface triangles inside an axis-parallel box.
+#include <fmt/format.h>
+
+#include "msml/core/operator.hpp"
+
+namespace msml::operators {
+namespace {
+
+struct Bounds {
+  Vec3 low, high;
+  bool holds(const Vec3& p) const { return (p.array() >= low.array()).all() && (p.array() <= high.array()).all(); }
+};
+
+Bounds box_of(const std::vector<double>& box) {
+  constexpr const char* axes = "xyz";
+  for (std::size_t d = 0; d < 3; ++d)
+    if (box[d] > box[d + 3])
+      throw Error(fmt::format("box: {0}min = {1:g} is above {0}max = {2:g}; the order is xmin ymin zmin xmax ymax zmax",
+                              axes[d], box[d], box[d + 3]));
+  return {Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5])};
+}
+
+/// Cells of one dimension whose nodes all lie in the box.
+std::vector<int> cells_inside(const Mesh& mesh, int wanted, const Bounds& box) {
+  std::vector<int> ids;
+  for (int c = 0; c < mesh.cell_count(); ++c) {
+    const CellKind kind = mesh.kinds[static_cast<std::size_t>(c)];
+    bool inside = dimension(kind) == wanted;
+    for (int i = 0; inside && i < node_count(kind); ++i)
+      inside = box.holds(mesh.points.row(mesh.cell(c)[i]).transpose());
+    if (inside) ids.push_back(c);
+  }
+  return ids;
+}
+
+IndexSet select_inside(const Mesh& mesh, const std::string& select, const Bounds& box) {
+  IndexSet set;
+  if (select == "points") {
+    for (int i = 0; i < mesh.point_count(); ++i)
+      if (box.holds(mesh.points.row(i).transpose())) set.ids.push_back(i);
+    return set;
+  }
+  set.kind = select == "elements" ? Indexed::elements : Indexed::faces;
+  if (select == "surfaceElements" && mesh.count(CellKind::tri3) + mesh.count(CellKind::tri6) == 0)
+    throw Error(
+        fmt::format("select = surfaceElements needs triangles, but the mesh has {}; make them with ExtractSurfaceMesh, "
+                    "or select points",
+                    mesh.summary()));
+  set.ids = cells_inside(mesh, set.kind == Indexed::elements ? 3 : 2, box);
+  return set;
+}
+
+void warn_if_empty(const Mesh& mesh, const std::string& select, const IndexSet& set, Reporter& reporter) {
+  if (!set.ids.empty() || mesh.point_count() == 0) return;
+  const Vec3 low = mesh.points.colwise().minCoeff(), high = mesh.points.colwise().maxCoeff();
+  reporter.warn(fmt::format("no {} lie in the box; the mesh reaches from ({:g} {:g} {:g}) to ({:g} {:g} {:g})", select,
+                            low.x(), low.y(), low.z(), high.x(), high.y(), high.z()));
+}
+
+}  // namespace
+
+Operator indices_from_box() {
+  Operator op("ComputeIndicesFromBoxROI", "Ids of points, elements or surface triangles inside a box.");
+  op.source("MSML 2015");
+  const auto mesh = op.input<Mesh>("mesh", "any mesh");
+  const auto box = op.parameter<std::vector<double>>(
+      "box", {.unit = "length", .counts = {6}, .doc = "xmin ymin zmin xmax ymax zmax, inclusive, along the axes"});
+  const auto select = op.parameter<std::string>(
+      "select", {.choices = {"points", "elements", "surfaceElements"},
+                 .doc = "points; elements: tetrahedra with all nodes inside; surfaceElements: triangles with all nodes "
+                        "inside, by their cell ids in the mesh"});
+  const auto indices = op.output<IndexSet>("indices", "0-based, ascending; nodes, elements or faces of the mesh");
+  op.note("A box that holds nothing gives an empty set and a warning.");
+  op.run([=](Context& c) {
+    IndexSet set = select_inside(c.get(mesh), c.get(select), box_of(c.get(box)));
+    warn_if_empty(c.get(mesh), c.get(select), set, c.reporter());
+    set.mesh = c.share(mesh);
+    c.set(indices, std::move(set));
+  });
+  return op;
+}
+
+}  // namespace msml::operators
