@@ -3,6 +3,7 @@
 #include "operators/vtk_guard.hpp"
 
 #include <vtkAlgorithm.h>
+#include <vtkLogger.h>
 #include <vtkNew.h>
 #include <vtkObjectFactory.h>
 #include <vtkOutputWindow.h>
@@ -46,6 +47,7 @@ void install_window() {
   std::call_once(once, [] {
     const vtkNew<CollectingWindow> window;
     vtkOutputWindow::SetInstance(window);
+    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);  // the logger prints beside the window
   });
 }
 
