@@ -121,6 +121,7 @@ TEST(MeshVolumeFromVoxels, MeetsTheCriteriaItIsGiven) {
   for (const Field& field : measured->cell_fields) {
     if (field.name == "radiusEdgeRatio")
       EXPECT_LE(*std::max_element(field.values.begin(), field.values.end()), 2.0 + 1e-9);
+  }
 }
 
 TEST(MeshVolumeFromVoxels, RefusesWhatIsNoLabelImage) {
