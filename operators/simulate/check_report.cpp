@@ -54,6 +54,13 @@ const char* name(fe::Preconditioner preconditioner) {
 
 std::string line(const std::string& what, const std::string& value) { return fmt::format("  {:<24}{}\n", what, value); }
 
+/// A sum of forces; components of round-off size, relative to the largest force, are shown as 0.
+std::string sum_text(Vec3 sum, double scale) {
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(sum[k]) <= 1e-12 * scale) sum[k] = 0;
+  return place(sum);
+}
+
 std::string element_at(const Simulation& simulation, int id) {
   return id < 0 ? std::string() : fmt::format(" (element {} at {})", id, place(centroid(*simulation.body.mesh, id)));
 }
@@ -72,11 +79,11 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   const fe::Check& check = outcome.check;
   std::string text = fmt::format("check of '{}' at t = {:.6g}\n", simulation.name, outcome.state.time);
   text += line("residual", fmt::format("{:.2e} of {:.4g}, the largest force", check.residual, check.load_scale));
-  text += line("sum of loads", place(check.sum_loads));
-  text += line("sum of reactions", place(check.sum_reactions));
+  text += line("sum of loads", sum_text(check.sum_loads, check.load_scale));
+  text += line("sum of reactions", sum_text(check.sum_reactions, check.load_scale));
   if (simulation.model.settings.integrator != fe::Integrator::static_) {
-    text += line("sum of inertia", place(check.sum_inertia));
-    text += line("sum of damping", place(check.sum_damping));
+    text += line("sum of inertia", sum_text(check.sum_inertia, check.load_scale));
+    text += line("sum of damping", sum_text(check.sum_damping, check.load_scale));
   }
   text += line("balance of these", fmt::format("{:.2e}", check.balance));
   text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));

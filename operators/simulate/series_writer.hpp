@@ -35,7 +35,9 @@ class SeriesWriter {
 
   OutputRequest request_;
   std::filesystem::path folder_;
-  Mesh frame_;  ///< cells and regions of every state
+  int stride_ = 1;  ///< increments between requested states
+  int stride_ = 1;  ///< increments from one state that is asked for to the next
+  Mesh frame_;      ///< cells and regions of every state
   std::shared_ptr<const Mesh> last_;
   std::vector<double> times_;
   std::vector<std::filesystem::path> files_;

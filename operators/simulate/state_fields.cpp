@@ -24,12 +24,14 @@ std::vector<double> von_mises(const std::vector<double>& stress) {
   return result;
 }
 
-Points StateFields::positions() const {
-  Points moved = body_.mesh->points;
+Points StateFields::displacement() const {
+  Points moved = Points::Zero(body_.mesh->points.rows(), 3);
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
-    if (body_.solid[static_cast<std::size_t>(i)]) moved.row(i) += state_.displacement.row(i);
+    if (body_.solid[static_cast<std::size_t>(i)]) moved.row(i) = state_.displacement.row(i);
   return moved;
 }
+
+Points StateFields::positions() const { return body_.mesh->points + displacement(); }
 
 const fe::ElementResults& StateFields::elements() {
   if (elements_) return *elements_;
@@ -41,7 +43,7 @@ const fe::ElementResults& StateFields::elements() {
 }
 
 std::optional<Field> StateFields::point_field(const std::string& name) {
-  if (name == "displacement") return Field{name, 3, rows(positions() - body_.mesh->points)};
+  if (name == "displacement") return Field{name, 3, rows(displacement())};
   if (name == "velocity") return Field{name, 3, rows(state_.velocity)};
   if (name == "acceleration") return Field{name, 3, rows(state_.acceleration)};
   if (name == "reaction") return Field{name, 3, rows(state_.reaction)};

@@ -22,6 +22,7 @@ class StateFields {
   void add_to(Mesh& mesh, const std::string& name);
 
  private:
+  Points displacement() const;
   const fe::ElementResults& elements();
   std::optional<Field> point_field(const std::string& name);
   std::optional<Field> cell_field(const std::string& name);

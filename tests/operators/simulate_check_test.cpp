@@ -45,8 +45,7 @@ TEST(CheckWarnings, LinearTetrahedraLockFromPoissonRatio045) {
   EXPECT_THAT(
       check_warnings(simulation, harmless(), {}),
       ElementsAre("region 'tissue' has poissonRatio = 0.45: linear tetrahedra lock (are too stiff) from 0.45. Use "
-                  "quadraticTet, with the mesh from ConvertLinearToQuadraticTetrahedralMesh",
-                  testing::_));
+                  "quadraticTet, with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
 }
 
 TEST(CheckWarnings, SmallStrainPastTenDegreesOfRotation) {
@@ -98,7 +97,7 @@ TEST(CheckReport, ColumnsAreAligned) {
   const auto simulation = simulation_of(0.3);
   const std::string text = check_text(simulation, harmless(), worst_shape(simulation.body));
   EXPECT_THAT(text, HasSubstr("check of 'cube' at t = 0\n"));
-  EXPECT_THAT(text, HasSubstr("\n  smallest J              0.9 (element 3 at (0.25, 0.125, 0.375))\n"));
+  EXPECT_THAT(text, HasSubstr("\n  smallest J              0.9 (element 3 at (0.375, 0.125, 0.25))\n"));
   EXPECT_THAT(text, HasSubstr("\n  smallest dihedral angle 45 degrees (element "));
 }
 
