@@ -35,7 +35,6 @@ class SeriesWriter {
 
   OutputRequest request_;
   std::filesystem::path folder_;
-  int stride_ = 1;  ///< increments between requested states
   int stride_ = 1;  ///< increments from one state that is asked for to the next
   Mesh frame_;      ///< cells and regions of every state
   std::shared_ptr<const Mesh> last_;
