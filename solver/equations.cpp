@@ -47,9 +47,11 @@ void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, F
   forces.external = Vector::Zero(size());
   if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
+  // The stiffness of a follower pressure may have any sign: a definite tangent goes without it.
+  BlockMatrix* with_followers = want == Want::definite_tangent ? nullptr : tangent;
   for (const auto& [set, scale] : loads) {
     forces.external += scale * set->dead;
-    add_followers(*set, scale, X_, u, forces.external, tangent);
+    add_followers(*set, scale, X_, u, forces.external, with_followers);
   }
 }
 

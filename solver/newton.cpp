@@ -81,22 +81,48 @@ void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   round_off_ = equations_.small_strain() ? 0 : 4e-16 * std::sqrt(sum);
 }
 
-LinearStatus Newton::factor(const Increment& increment, const Vector& u) {
+void Newton::stiffness(const Vector& u, BlockMatrix& K) {
+  const Stopwatch watch(seconds_assembly_);
+  Forces unused;
+  equations_.evaluate(u, {}, Want::definite_tangent, unused, &K);
+}
+
+Vector Newton::residual(const Increment& increment) const {
+  if (increment.allowed.size() == 0) return forces_.residual();
+  return forces_.residual() - increment.allowed;
+}
+
+LinearStatus Newton::factor(const Increment& increment) {
   const Kinematics& motion = increment.motion;
   const Settings& settings = model_.settings;
+  effective_.values = tangent_.values;
+  if (motion.dynamic()) {
+    add(effective_, motion.acceleration_factor + motion.velocity_factor * settings.damping_mass, equations_.mass());
+    if (increment.damping_matrix)
+      add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
+  }
+  return linear_->factor(effective_, increment.fixed);
+}
+
+LinearStatus Newton::direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
+                               Vector& step) {
   for (const bool definite : {false, true}) {
     if (definite) {
       evaluate(increment, u, Want::definite_tangent, true);
       tangent_current_ = false;
     }
     const Stopwatch watch(seconds_linear_);
-    effective_.values = tangent_.values;
-    if (motion.dynamic()) {
-      add(effective_, motion.acceleration_factor + motion.velocity_factor * settings.damping_mass, equations_.mass());
-      if (increment.damping_matrix)
-        add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
+    LinearStatus status = factor(increment);
+    if (status == LinearStatus::done) {
+      Vector right = residual, product;
+      if (jump.size() > 0) {
+        multiply(tangent_, jump, product);
+        right -= product;
+      }
+      ++solves_;
+      status = linear_->solve(right, model_.settings.linear_tolerance, step);
     }
-    const LinearStatus status = linear_->factor(effective_, increment.fixed);
+    // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
     if (!definite) indefinite_ = status == LinearStatus::not_positive_definite;
     if (status != LinearStatus::not_positive_definite) return status;
   }
@@ -110,7 +136,7 @@ double Newton::line_search(const Increment& increment, const Vector& direction, 
   for (int trial = 0; trial < 12; ++trial) {
     u = start + step * direction;
     evaluate(increment, u, want_, false);
-    const Vector now = forces_.residual();
+    const Vector now = this->residual(increment);
     const double new_norm = free_norm(now, increment.fixed);
     const double new_slope = dot(direction, now);
     if (!forces_.found.finite || !std::isfinite(new_norm)) {
@@ -183,7 +209,7 @@ IncrementResult Newton::run(const Increment& increment) {
   // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
   equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
                              increment.damping_matrix, forces_);
-  Vector residual = forces_.residual(), product, direction;
+  Vector residual = this->residual(increment), step;
   note_residual(increment, residual, result);
   const bool moved = jump.squaredNorm() > 0;
   if (!moved && limit > 1 && accepted(result, residual)) {
@@ -193,37 +219,51 @@ IncrementResult Newton::run(const Increment& increment) {
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);
     ++iterations_;
-    LinearStatus status = factor(increment, u);
-    if (status != LinearStatus::done) return result.stop = stop_of(status), result;
-    if (iteration == 0 && moved) {
-      multiply(tangent_, jump, product);
-      residual -= product;
-    }
-    {
-      const Stopwatch watch(seconds_linear_);
-      ++solves_;
-      status = linear_->solve(residual, model_.settings.linear_tolerance, direction);
-    }
+    const bool moving = iteration == 0 && moved;
+    const LinearStatus status = direction(increment, u, moving ? jump : Vector(), residual, step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     tangent_current_ = false;
-    if (iteration == 0) u += jump;
-    if (limit == 1) {
-      u += direction;
-      return result;
-    }
-    if (iteration == 0 && moved) {
-      u += direction;
+    if (moving || limit == 1) {
+      u += jump * (iteration == 0) + step;
+      if (limit == 1) return result;
       evaluate(increment, u, want_, false);
-    } else if (line_search(increment, direction, residual, u) == 0) {
+    } else if (line_search(increment, step, residual, u) == 0) {
       return result.stop = Stop::diverged, result;
     }
-    residual = forces_.residual();
+    residual = this->residual(increment);
     note_residual(increment, residual, result);
     if (accepted(result, residual)) return result.stop = verdict(increment, result), result;
     if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
       return result.stop = Stop::diverged, result;
   }
   result.stop = Stop::newton_limit;
+  return result;
+}
+
+IncrementResult Newton::walk(const Increment& increment) {
+  const IncrementResult direct = run(increment);
+  const bool hopeless = direct.stop == Stop::singular || direct.stop == Stop::out_of_memory;
+  if (direct.stop == Stop::converged || hopeless || model_.settings.newton_iterations == 1) return direct;
+  evaluate(increment, increment.start, want_, false);
+  const Vector unbalanced = this->residual(increment);
+  Increment part = increment;
+  double share = 0, piece = 0.25;
+  IncrementResult result = direct;
+  while (share < 1 && piece > 1e-3) {
+    const double next = std::min(1.0, share + piece);
+    part.target = increment.start + next * (increment.target - increment.start);
+    part.allowed = (1 - next) * unbalanced;
+    tangent_current_ = false;
+    result = run(part);
+    if (result.stop == Stop::converged) {
+      part.start = result.u;
+      share = next;
+      piece *= 2;
+    } else {
+      piece /= 2;
+    }
+  }
+  tangent_current_ = false;
   return result;
 }
 

@@ -14,6 +14,7 @@ struct Increment {
   ScaledLoads loads;
   Kinematics motion;
   const BlockMatrix* damping_matrix = nullptr;  ///< K at the start of the step, for Rayleigh damping; null without
+  Vector allowed = {};  ///< residual to end with instead of zero, see walk(); empty: zero
 };
 
 /// How it went.
@@ -36,9 +37,14 @@ class Newton {
   /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one. A
   /// static state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
   IncrementResult run(const Increment& increment);
+  /// The same; where that fails, walks to the solution along R(u) = (1 - s) R(start), s from 0 to 1, with the supports
+  /// moving in proportion, in pieces that halve on failure and double on success (at least 2^-10).
+  IncrementResult walk(const Increment& increment);
 
   /// Forces and tangent at u for the next increment, with the tangent that increments start from.
   void prepare(const Vector& u, const ScaledLoads& loads);
+  /// The semidefinite stiffness at u, for Rayleigh damping: an indefinite one would feed energy in.
+  void stiffness(const Vector& u, BlockMatrix& K);
   /// Adds inertia and damping to the forces, or none.
   void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix);
   void rest();
@@ -53,7 +59,10 @@ class Newton {
   void report(Outcome& outcome) const;
 
  private:
-  LinearStatus factor(const Increment& increment, const Vector& u);
+  LinearStatus factor(const Increment& increment);
+  LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
+                         Vector& step);
+  Vector residual(const Increment& increment) const;
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   bool accepted(const IncrementResult& result, const Vector& residual) const;

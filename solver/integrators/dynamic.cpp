@@ -10,7 +10,7 @@ namespace {
 /// Newmark, beta = 1/4, gamma = 1/2: u1 = u0 + dt v0 + dt^2/4 (a0 + a1), v1 = v0 + dt/2 (a0 + a1), hence
 /// a1 = 4 (u1 - u0)/dt^2 - 4 v0/dt - a0 and v1 = 2 (u1 - u0)/dt - v0 (Newmark 1959, doi 10.1061/JMCEA3.0000098).
 /// The balance at the end of the step, M a1 + (alpha M + beta K0) v1 + f_int(u1) = f_ext(u1), then has u1 alone as
-/// unknown; K0 is the tangent at the start of the step.
+/// unknown; K0 is the semidefinite tangent at the start of the step.
 Kinematics kinematics(Integrator integrator, const Motion& now, const Mask& fixed, double dt) {
   Kinematics k{.start = now.u, .fixed = fixed, .dt = dt, .velocity_before = now.v};
   if (integrator == Integrator::implicit_euler) {
@@ -52,10 +52,10 @@ void run_dynamic(Run& run) {
                           kinematics(settings.integrator, run.now, supports.fixed, step.dt),
                           nullptr};
       if (damped) {
-        K0.values = run.newton.tangent().values;
+        run.newton.stiffness(run.now.u, K0);
         increment.damping_matrix = &K0;
       }
-      const IncrementResult result = run.newton.run(increment);
+      const IncrementResult result = run.newton.walk(increment);
       if (result.stop != Stop::converged) return explain(run, result, -1);
       const Vector velocity = increment.motion.velocity_at(result.u);
       const Vector acceleration = increment.motion.acceleration_at(result.u);

@@ -41,6 +41,8 @@ class Law {
   virtual std::string name() const = 0;                ///< the tag of the language
   virtual double poisson_ratio() const = 0;            ///< of the small-strain limit
   virtual double shear_modulus() const = 0;            ///< of the small-strain limit, stress
+  /// True if Want::tangent is the derivative of the stress; otherwise Newton's method converges, but not quadratically.
+  virtual bool exact_tangent() const { return true; }
   virtual bool small_strain() const { return false; }  ///< true if the law is linear in H and sees no rotation
 };
 

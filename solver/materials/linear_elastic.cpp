@@ -158,6 +158,7 @@ class LinearLaw final : public Law {
   std::string name() const override { return "linearElasticMaterial"; }
   double poisson_ratio() const override { return data_.poisson_ratio; }
   double shear_modulus() const override { return lame_.mu; }
+  bool exact_tangent() const override { return data_.strain == Strain::small || exact(Want::tangent); }
   bool small_strain() const override { return data_.strain == Strain::small; }
 
  private:

@@ -58,6 +58,49 @@ inline Mesh box_mesh(int nx, int ny, int nz, Vec3 size, CellKind kind) {
                    [&](double x, double y, double z) { return Vec3(x * size[0], y * size[1], z * size[2]); });
 }
 
+/// Joins points closer than 1e-9 (coordinates of order one).
+inline Mesh merge(const std::vector<Mesh>& parts) {
+  Mesh joined;
+  std::map<std::array<long, 3>, int> known;
+  std::vector<Vec3> points;
+  for (const Mesh& part : parts)
+    for (int c = 0; c < part.cell_count(); ++c) {
+      std::vector<int> nodes;
+      for (int a = 0; a < node_count(part.kinds[static_cast<std::size_t>(c)]); ++a) {
+        const Vec3 x = part.points.row(part.cell(c)[a]).transpose();
+        const std::array<long, 3> key{std::lround(x[0] * 1e8), std::lround(x[1] * 1e8), std::lround(x[2] * 1e8)};
+        const auto [it, fresh] = known.emplace(key, static_cast<int>(points.size()));
+        if (fresh) points.push_back(x);
+        nodes.push_back(it->second);
+      }
+      joined.add_cell(part.kinds[static_cast<std::size_t>(c)], nodes.data());
+    }
+  joined.points.resize(static_cast<Eigen::Index>(points.size()), 3);
+  for (std::size_t n = 0; n < points.size(); ++n)
+    joined.points.row(static_cast<Eigen::Index>(n)) = points[n].transpose();
+  return joined;
+}
+
+/// The part x, y, z >= 0 of the shell a <= r <= b: three blocks of n x n x n cubes, one for each face of the cube that
+/// looks outwards. All nodes lie on true spheres: tet10 is curved.
+inline Mesh sphere_octant(int n, double a, double b, CellKind kind) {
+  const auto spread = [](double p) { return std::tan(M_PI / 4 * p); };
+  const auto shell = [=](const Vec3& direction, double s) -> Vec3 {
+    return (a + s * (b - a)) * direction.normalized();
+  };
+  return merge({grid_mesh(n, n, n, kind,
+                          [=](double p, double q, double s) {
+                            return shell({1, spread(p), spread(q)}, s);
+                          }),
+                grid_mesh(n, n, n, kind,
+                          [=](double p, double q, double s) {
+                            return shell({spread(q), 1, spread(p)}, s);
+                          }),
+                grid_mesh(n, n, n, kind, [=](double p, double q, double s) {
+                  return shell({spread(p), spread(q), 1}, s);
+                })});
+}
+
 /// Ids of the points that pass a test.
 inline std::vector<int> points_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& test) {
   std::vector<int> found;

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Motion against exact oscillators, free fall, energy and momentum.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "solver/check_answer.hpp"
+#include "solver/equations.hpp"
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+
+/// One tetrahedron with unit edges along the axes and three nodes held; node 3 moves along z only. By hand:
+/// k = V (lambda + 2 mu) with V = 1/6; m = rho V / 10 consistent (2 rho V / 20), rho V / 4 lumped.
+struct Oscillator {
+  double k, m;
+  double omega() const { return std::sqrt(k / m); }
+  double period() const { return 2 * M_PI / omega(); }
+};
+
+constexpr double young = 100, poisson = 0.25, density = 3;
+
+Oscillator oscillator(bool lumped) {
+  const double mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
+  return {(lambda + 2 * mu) / 6, density / 6 / (lumped ? 4 : 10)};
+}
+
+/// The oscillator, pulled by a force f from t = 0 on.
+Model oscillator_model(Integrator integrator, bool lumped, double dt, int count, double f = 0.1) {
+  Mesh mesh;
+  mesh.points.resize(4, 3);
+  mesh.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  const int nodes[4] = {0, 1, 2, 3};
+  mesh.add_cell(CellKind::tet4, nodes);
+  Model model = make_model(std::move(mesh),
+                           {.youngs_modulus = young, .poisson_ratio = poisson, .strain = Strain::small}, density);
+  model.settings.integrator = integrator;
+  model.settings.lumped_mass = lumped;
+  model.settings.tolerance = 1e-12;
+  Step& step = model.steps[0];
+  step.dt = dt;
+  step.count = count;
+  step.prescribed = {fix({0, 1, 2}), fix({3}, true, true, false)};
+  step.forces = {{.name = "pull", .nodes = {3}, .values = {Vec3(0, 0, f)}}};
+  return model;
+}
+
+/// Error at t = 0.6 periods against u = f/k (1 - exp(-z w t) (cos wd t + z w / wd sin wd t)), relative to f/k.
+double error_at_end(Integrator integrator, bool lumped, int count, double alpha = 0, double beta = 0) {
+  const Oscillator o = oscillator(lumped);
+  const double end = 0.6 * o.period(), f = 0.1;
+  Model model = oscillator_model(integrator, lumped, end / count, count, f);
+  model.settings.damping_mass = alpha;
+  model.settings.damping_stiffness = beta;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  const double w = o.omega(), z = (alpha / w + beta * w) / 2, wd = w * std::sqrt(1 - z * z);
+  const double exact = f / o.k * (1 - std::exp(-z * w * end) * (std::cos(wd * end) + z * w / wd * std::sin(wd * end)));
+  return std::abs(outcome.state.displacement(3, 2) - exact) / (f / o.k);
+}
+
+TEST(ImplicitEuler, IsOfFirstOrderInTime) {
+  for (const bool lumped : {false, true}) {
+    const double order = std::log2(error_at_end(Integrator::implicit_euler, lumped, 400) /
+                                   error_at_end(Integrator::implicit_euler, lumped, 800));
+    EXPECT_NEAR(order, 1, 0.05);
+  }
+}
+
+TEST(Newmark, IsOfSecondOrderInTime) {
+  for (const bool lumped : {false, true}) {
+    const double order =
+        std::log2(error_at_end(Integrator::newmark, lumped, 50) / error_at_end(Integrator::newmark, lumped, 100));
+    EXPECT_NEAR(order, 2, 0.05);
+  }
+}
+
+TEST(RayleighDamping, FollowsTheExactDampedOscillator) {
+  for (const auto& [alpha, beta] : {std::pair{2.0, 0.0}, {0.0, 0.01}, {1.0, 0.005}}) {
+    const double coarse = error_at_end(Integrator::newmark, false, 50, alpha, beta);
+    const double fine = error_at_end(Integrator::newmark, false, 100, alpha, beta);
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << alpha << " " << beta;
+    EXPECT_LT(fine, 2e-3);
+    EXPECT_NEAR(std::log2(error_at_end(Integrator::implicit_euler, false, 400, alpha, beta) /
+                          error_at_end(Integrator::implicit_euler, false, 800, alpha, beta)),
+                1, 0.1);
+  }
+}
+
+TEST(ImplicitEuler, DampsTheLowestPeriodAsTheCheckSays) {
+  const Oscillator o = oscillator(false);
+  const int per_cycle = 40;
+  Model model = oscillator_model(Integrator::implicit_euler, false, o.period() / per_cycle, 10 * per_cycle);
+  std::vector<double> u;
+  const Outcome outcome = solve(model, [&](const State& state) {
+    u.push_back(state.displacement(3, 2) - 0.1 / o.k);
+    return true;
+  });
+  EXPECT_NEAR(outcome.check.lowest_period, o.period(), 1e-6 * o.period());
+  // Largest swing in the second and in the seventh cycle: five cycles of the (slightly longer) discrete period.
+  const auto peak = [&](int cycle) {
+    double largest = 0;
+    for (int k = 0; k < per_cycle; ++k)
+      largest = std::max(largest, std::abs(u[static_cast<std::size_t>(cycle * per_cycle + k)]));
+    return largest;
+  };
+  const double measured = 1 - std::pow(peak(6) / peak(1), 1.0 / 5);
+  EXPECT_NEAR(outcome.check.damped_per_cycle, measured, 0.03);
+  EXPECT_GT(measured, 0.3);
+}
+
+TEST(Newmark, KeepsTheEnergyOfALinearBody) {
+  const Oscillator o = oscillator(false);
+  const Model model = oscillator_model(Integrator::newmark, false, o.period() / 15, 500);
+  double worst = 0;
+  solve(model, [&](const State& state) {
+    // Kinetic + elastic - work of the constant force = 0 from rest.
+    const double v = state.velocity(3, 2), u = state.displacement(3, 2);
+    worst = std::max(worst, std::abs(0.5 * o.m * v * v + 0.5 * o.k * u * u - 0.1 * u));
+    return true;
+  });
+  EXPECT_LT(worst, 1e-10 * 0.1 * 0.1 / o.k);
+}
+
+TEST(Newmark, KeepsTheEnergyOfASwingingBeamNearly) {
+  Model model = beam_model(2, CellKind::tet4, 0.3, Strain::corotated);
+  model.settings.integrator = Integrator::newmark;
+  model.steps[0].dt = 0.005;
+  model.steps[0].count = 100;
+  const Equations equations(model);
+  double largest = 0, drift = 0;
+  const Outcome outcome = solve(model, [&](const State& state) {
+    const Vector u = to_vector(equations.numbering(), state.displacement),
+                 v = to_vector(equations.numbering(), state.velocity);
+    Vector force = Vector::Zero(u.size()), Mv;
+    multiply(equations.mass(), v, Mv);
+    const double work = u.dot(equations.loads(0).dead);
+    const double elastic = equations.elements().add_internal(u, Want::stress, force, nullptr).energy;
+    largest = std::max(largest, std::abs(work));
+    drift = std::max(drift, std::abs(elastic + 0.5 * v.dot(Mv) - work));
+    return true;
+  });
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  std::cout << "Newmark, swinging beam, 100 steps: energy drift " << drift / largest << " of the largest work\n";
+  EXPECT_LT(drift, 0.02 * largest);
+  EXPECT_LT(outcome.check.balance, 1e-6);
+}
+
+TEST(Dynamics, AFreeBodyFallsWithoutStrain) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
+    for (const bool lumped : {false, true})
+      for (const int iterations : {1, 25}) {
+        Model model = make_model(box_mesh(2, 1, 1, {2, 1, 1}, kind), {}, 7);
+        model.settings.integrator = Integrator::newmark;
+        model.settings.lumped_mass = lumped;
+        model.settings.newton_iterations = iterations;
+        model.steps[0].gravity = Vec3(1, 2, -10);
+        model.steps[0].dt = 0.1;
+        model.steps[0].count = 20;
+        const Outcome outcome = solve(model, {});
+        ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+        // The average acceleration method is exact for g t^2 / 2 = 2 g.
+        for (int n = 0; n < model.mesh->point_count(); ++n)
+          EXPECT_LT((outcome.state.displacement.row(n) - 2 * Eigen::RowVector3d(1, 2, -10)).norm(), 1e-8);
+        EXPECT_EQ(outcome.check.lowest_period, 0);  // nothing holds it
+        EXPECT_LT(outcome.check.largest_strain, 1e-8);
+      }
+}
+
+TEST(Dynamics, PrescribedMotionHasItsVelocityAndPushesBack) {
+  Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1e4}, 6);
+  std::vector<int> all;
+  for (int n = 0; n < 8; ++n) all.push_back(n);
+  model.steps[0].prescribed = {{.name = "move", .nodes = all, .values = {Vec3(2, 0, 0)}}};
+  model.steps[0].dt = 0.1;
+  model.steps[0].count = 4;
+  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark}) {
+    model.settings.integrator = integrator;
+    std::vector<State> states;
+    const Outcome outcome = solve(model, [&](const State& state) { return states.push_back(state), true; });
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    EXPECT_NEAR(states[2].displacement(0, 0), 1, 1e-12);
+    EXPECT_NEAR(states[2].velocity(5, 0), 5, 1e-12);
+    EXPECT_NEAR(states[2].acceleration.norm(), 0, 1e-9);
+    // The first step takes the body from rest to speed 5 in 0.1: mass 6 times 50.
+    EXPECT_NEAR(states[1].reaction.col(0).sum(), 300, 1e-8);
+  }
+}
+
+TEST(Dynamics, ReactionsLoadsInertiaAndDampingBalance) {
+  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark})
+    for (const int iterations : {1, 25}) {
+      Model model = beam_model(2, CellKind::tet10, 0.3, Strain::corotated);
+      model.settings.integrator = integrator;
+      model.settings.newton_iterations = iterations;
+      model.settings.damping_mass = 0.5;
+      model.settings.damping_stiffness = 0.01;
+      model.steps[0].dt = 0.01;
+      model.steps[0].count = 10;
+      const Outcome outcome = solve(model, {});
+      ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+      // One solve per step leaves the change of the tangent over a step in the residual.
+      EXPECT_LT(outcome.check.balance, iterations == 1 ? 0.02 : 1e-6);
+      EXPECT_NEAR(outcome.check.sum_loads[2], -9.81 * 1000 * 0.1 * 0.02 * 0.02, 1e-9);
+    }
+}
+
+TEST(Dynamics, SettlesInTheStaticState) {
+  Model model = beam_model(1, CellKind::tet10, 0.3, Strain::corotated);
+  const Outcome rest = solve(model, {});
+  model.settings.integrator = Integrator::implicit_euler;
+  model.steps[0].dt = 0.2;
+  model.steps[0].count = 60;
+  const Outcome settled = solve(model, {});
+  EXPECT_LT((rest.state.displacement - settled.state.displacement).norm(), 1e-6 * rest.state.displacement.norm());
+}
+
+// E = 1e6, rho = 1000, L = 10, h = .5: Euler and Bernoulli's first bending frequency of the cantilever is .0255417 Hz.
+TEST(Dynamics, TheLowestPeriodIsThatOfTheBendingBeam) {
+  for (const bool lumped : {false, true}) {
+    Model model = make_model(box_mesh(20, 2, 2, {10, 0.5, 0.5}, CellKind::tet10),
+                             {.youngs_modulus = 1e6, .poisson_ratio = 0.3, .strain = Strain::small}, 1000);
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    model.settings.integrator = Integrator::newmark;
+    model.settings.lumped_mass = lumped;
+    const Outcome outcome = solve(model, {});
+    EXPECT_NEAR(1 / outcome.check.lowest_period, 0.0255417, 0.01 * 0.0255417);
+  }
+}
+
+TEST(Dynamics, LoadsOfTheNextStepReplaceThoseBefore) {
+  Model model = oscillator_model(Integrator::implicit_euler, true, 1, 400);
+  model.steps.push_back(model.steps[0]);
+  model.steps[1].forces[0].values[0] *= -2;
+  const Outcome outcome = solve(model, {});
+  EXPECT_NEAR(outcome.state.displacement(3, 2), -0.2 / oscillator(true).k, 1e-9);
+  EXPECT_EQ(outcome.state.increment, 800);
+  EXPECT_NEAR(outcome.state.time, 800, 1e-9);
+}
+
+}  // namespace
+}  // namespace msml::fe

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How runs fail: every reason is reached, named and explained; the last good state is kept.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+using ::testing::HasSubstr;
+
+bool at_bottom(const Vec3& x) { return x[2] < 1e-9; }
+bool at_top(const Vec3& x) { return x[2] > 1 - 1e-9; }
+
+/// A unit cube whose top is moved by dz.
+Model squeezed(double dz, Ramp ramp = Ramp::linear) {
+  Model model = make_model(box_mesh(2, 2, 2, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1000});
+  Prescribed top{.name = "top", .nodes = points_where(*model.mesh, at_top), .values = {Vec3(0, 0, dz)}, .ramp = ramp};
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom)), top};
+  return model;
+}
+
+TEST(Failure, AnInvertedElementIsNamedWithItsPlace) {
+  Model model = squeezed(-1.5);
+  model.settings.load_steps = 6;
+  int states = 0;
+  const Outcome outcome = solve(model, [&](const State&) { return ++states > 0; });
+  EXPECT_EQ(outcome.stop, Stop::inverted_element) << name(outcome.stop);
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("step 1 'load' stopped at"));
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("inverted element"));
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("worst element "));
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("det F = -"));
+  EXPECT_GT(outcome.check.smallest_J, 0);  // the last good state
+  EXPECT_GE(states, 4);
+}
+
+// Euler: a clamped-free column buckles at pi^2 E I / (4 L^2); a straight one stays straight and becomes unstable.
+TEST(Failure, AColumnBeyondEulersLoadHasAnIndefiniteTangent) {
+  const double E = 1000, L = 8, I = 1.0 / 12, euler = M_PI * M_PI * E * I / (4 * L * L);
+  for (const double share : {0.85, 1.2}) {
+    Model model = make_model(box_mesh(1, 1, 8, {1, 1, L}, CellKind::tet10), {.youngs_modulus = E, .poisson_ratio = 0});
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom))};
+    FaceLoad load{.name = "top", .pressures = {share * euler}};
+    load.faces = faces_where(*model.mesh, [&](const Vec3& x) { return x[2] > L - 1e-9; });
+    model.steps[0].face_loads = {load};
+    model.settings.load_steps = 2;
+    const Outcome outcome = solve(model, {});
+    if (share < 1) {
+      EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    } else {
+      EXPECT_EQ(outcome.stop, Stop::indefinite_tangent) << outcome.diagnosis;
+      EXPECT_THAT(outcome.diagnosis, HasSubstr("unstable"));
+    }
+  }
+}
+
+TEST(Failure, TheIterationLimitIsNamedWithTheResiduals) {
+  Model model = beam_model(1, CellKind::tet10, 0.3, Strain::corotated);
+  model.settings.newton_iterations = 2;
+  model.settings.tolerance = 1e-12;
+  model.steps[0].gravity *= 100;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::newton_limit) << outcome.diagnosis;
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("residuals "));
+  EXPECT_THAT(outcome.diagnosis, HasSubstr("more loadSteps"));
+}
+
+TEST(Failure, AnOverflowIsADivergence) {
+  Model model = beam_model(1, CellKind::tet4, 0.3, Strain::corotated);
+  model.steps[0].gravity *= 1e250;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::diverged) << outcome.diagnosis;
+  EXPECT_TRUE(outcome.state.displacement.allFinite());
+}
+
+TEST(Failure, AnUnreachableLinearToleranceIsNamed) {
+  Model model = beam_model(1, CellKind::tet4, 0.3, Strain::small);
+  model.settings.linear_solver = LinearSolver::cg;
+  model.settings.linear_tolerance = 1e-30;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::linear_solver_limit) << outcome.diagnosis;
+}
+
+// Two cubes that share one edge: the second can turn about it.
+TEST(Failure, AHingeIsASingularMatrix) {
+  Mesh one = box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), two = one;
+  two.points.rowwise() += Eigen::RowVector3d(1, 0, 1);
+  Model model = make_model(merge({one, two}), {});
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom))};
+  model.steps[0].gravity = Vec3(0, 0, -1);
+  for (const LinearSolver solver : {LinearSolver::direct, LinearSolver::cg}) {
+    model.settings.linear_solver = solver;
+    const Outcome outcome = solve(model, {});
+    EXPECT_NE(outcome.stop, Stop::converged);
+    if (solver == LinearSolver::direct) {
+      EXPECT_EQ(outcome.stop, Stop::singular) << outcome.diagnosis;
+      EXPECT_THAT(outcome.diagnosis, HasSubstr("can move freely"));
+    }
+  }
+}
+
+TEST(Failure, AnInterruptKeepsTheLastState) {
+  Model model = beam_model(1, CellKind::tet4, 0.3, Strain::corotated);
+  model.settings.integrator = Integrator::newmark;
+  model.steps[0].count = 10;
+  model.steps[0].dt = 0.01;
+  const Outcome outcome = solve(model, [](const State& state) { return state.increment < 3; });
+  EXPECT_EQ(outcome.stop, Stop::interrupted);
+  EXPECT_EQ(outcome.state.increment, 3);
+  EXPECT_NEAR(outcome.state.time, 0.03, 1e-12);
+}
+
+TEST(Failure, ADynamicInversionNamesTimeAndIncrement) {
+  Model model = squeezed(-1.5);
+  model.settings.integrator = Integrator::implicit_euler;
+  model.steps[0].dt = 0.1;
+  model.steps[0].count = 15;
+  for (const int iterations : {1, 25}) {
+    model.settings.newton_iterations = iterations;
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, Stop::inverted_element) << outcome.diagnosis;
+    EXPECT_THAT(outcome.diagnosis, HasSubstr("with dt = 0.1"));
+    EXPECT_GT(outcome.check.smallest_J, 0);
+  }
+}
+
+}  // namespace
+}  // namespace msml::fe
