@@ -90,8 +90,9 @@ void refuse_empty(const Record& record, const Body& body) {
 std::vector<fe::Face> faces_between(const IndexSet& set, const Body& body) {
   std::vector<bool> in(body.solid.size(), false);
   for (const int id : set.ids) in[static_cast<std::size_t>(id)] = true;
+  const FaceTable table(body);
   std::vector<fe::Face> faces;
-  for (const fe::Face& face : FaceTable(body).boundary_faces()) {
+  for (const fe::Face& face : table.boundary_faces()) {
     const auto nodes = face_nodes(*body.mesh, face);
     if (std::all_of(nodes.begin(), nodes.begin() + 3, [&](int node) { return in[static_cast<std::size_t>(node)]; }))
       faces.push_back(face);
