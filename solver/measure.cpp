@@ -2,6 +2,7 @@
 // Deformation measures, stresses and strains of states.
 #include "solver/measure.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -78,7 +79,8 @@ ElementResults element_results(const Model& model, const State& state) {
   results.energy_density.assign(cells, 0);
   results.J.assign(cells, 0);
   results.rotation.assign(cells, 0);
-  tbb::task_arena arena(model.settings.threads);
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
   arena.execute([&] {
     const std::vector<ElementPoints> points = elements->points(to_vector(numbering, state.displacement));
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t e) {

@@ -65,20 +65,20 @@ void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   const Stopwatch watch(seconds_assembly_);
   equations_.evaluate(u, loads, want_, forces_, &tangent_);
   tangent_current_ = true;
-  // One part in 1e16 of the strain in each entry, times stiffness and element size.
-  const PatternPtr& pattern = tangent_.pattern;
-  const double size =
-      std::cbrt(model_.mesh->points.rows() > 0
-                    ? (model_.mesh->points.colwise().maxCoeff() - model_.mesh->points.colwise().minCoeff()).prod() /
-                          pattern->nodes()
-                    : 0.0);
+}
+
+double Newton::round_off(const Vector& u) const {
+  // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1: times the stiffness.
+  const Points& points = model_.mesh->points;
+  const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
+  const double size = equations_.small_strain() ? 0 : std::cbrt(extent.prod() / effective_.pattern->nodes());
   double sum = 0;
-  for (const int p : pattern->diagonal)
+  for (const int p : effective_.pattern->diagonal)
     for (int i = 0; i < 3; ++i) {
-      const double k = tangent_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)] * size;
+      const double k = effective_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
       sum += k * k;
     }
-  round_off_ = equations_.small_strain() ? 0 : 4e-16 * std::sqrt(sum);
+  return 4e-16 * std::sqrt(sum) * (size + u.cwiseAbs().maxCoeff());
 }
 
 void Newton::stiffness(const Vector& u, BlockMatrix& K) {
@@ -165,9 +165,10 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
     }
 }
 
-bool Newton::accepted(const IncrementResult& result, const Vector& residual) const {
+bool Newton::accepted(const IncrementResult& result) const {
   const double norm = result.residuals.back();
-  return residual.allFinite() && norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
+  return std::isfinite(norm) && std::isfinite(result.scale) &&
+         norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
 }
 
 void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix) {
@@ -211,8 +212,10 @@ IncrementResult Newton::run(const Increment& increment) {
                              increment.damping_matrix, forces_);
   Vector residual = this->residual(increment), step;
   note_residual(increment, residual, result);
+  if (!std::isfinite(result.residuals.back())) return result.stop = Stop::diverged, result;
   const bool moved = jump.squaredNorm() > 0;
-  if (!moved && limit > 1 && accepted(result, residual)) {
+  round_off_ = 0;
+  if (!moved && limit > 1 && accepted(result)) {
     result.stop = verdict(increment, result);
     return result;
   }
@@ -223,6 +226,7 @@ IncrementResult Newton::run(const Increment& increment) {
     const LinearStatus status = direction(increment, u, moving ? jump : Vector(), residual, step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     tangent_current_ = false;
+    if (iteration == 0) round_off_ = round_off(u + jump + step);
     if (moving || limit == 1) {
       u += jump * (iteration == 0) + step;
       if (limit == 1) return result;
@@ -232,7 +236,7 @@ IncrementResult Newton::run(const Increment& increment) {
     }
     residual = this->residual(increment);
     note_residual(increment, residual, result);
-    if (accepted(result, residual)) return result.stop = verdict(increment, result), result;
+    if (accepted(result)) return result.stop = verdict(increment, result), result;
     if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
       return result.stop = Stop::diverged, result;
   }

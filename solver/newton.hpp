@@ -14,7 +14,7 @@ struct Increment {
   ScaledLoads loads;
   Kinematics motion;
   const BlockMatrix* damping_matrix = nullptr;  ///< K at the start of the step, for Rayleigh damping; null without
-  Vector allowed = {};  ///< residual to end with instead of zero, see walk(); empty: zero
+  Vector allowed = {};                          ///< residual to end with instead of zero, see walk(); empty: zero
 };
 
 /// How it went.
@@ -65,7 +65,8 @@ class Newton {
   Vector residual(const Increment& increment) const;
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
-  bool accepted(const IncrementResult& result, const Vector& residual) const;
+  bool accepted(const IncrementResult& result) const;
+  double round_off(const Vector& u) const;
   void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
   Stop verdict(const Increment& increment, IncrementResult& result);
 

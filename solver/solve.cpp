@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The entry point: prepares the equations, runs the integrator, fills the check.
 #include <fmt/format.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "solver/check_answer.hpp"
@@ -82,7 +84,8 @@ void Run::set_reactions(const Mask& fixed) {
 
 Outcome solve(const Model& model, const Observer& observer) {
   model.check();
-  tbb::task_arena arena(model.settings.threads);
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
   return arena.execute([&] { return run_model(model, observer); });
 }
 

@@ -118,7 +118,7 @@ TEST(FollowerPressure, TangentIsTheDerivativeOnAClosedSurface) {
 
 TEST(FollowerPressure, InflatesABallAsTheDeadOneDoesWhenSmall) {
   for (const bool follower : {false, true}) {
-    Model model = make_model(sphere_octant(2, 1, 2, CellKind::tet10), {.youngs_modulus = 1e6});
+    Model model = make_model(sphere_octant(4, 1, 2, CellKind::tet10), {.youngs_modulus = 1e6});
     Step& step = model.steps[0];
     for (int d = 0; d < 3; ++d)
       step.prescribed.push_back(
@@ -127,15 +127,15 @@ TEST(FollowerPressure, InflatesABallAsTheDeadOneDoesWhenSmall) {
     step.face_loads[0].faces = faces_where(*model.mesh, [](const Vec3& x) { return std::abs(x.norm() - 1) < 1e-9; });
     const Outcome outcome = solve(model, {});
     ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
-    // Lame's 8e-7; the coarse mesh is within 2 %.
-    EXPECT_NEAR(outcome.state.displacement(nearest_point(*model.mesh, {1, 0, 0}), 0), 8e-7, 1.6e-8);
+    // Lame's 8e-7; the mesh is within 1 %.
+    EXPECT_NEAR(outcome.state.displacement(nearest_point(*model.mesh, {1, 0, 0}), 0), 8e-7, 8e-9);
   }
 }
 
 TEST(FollowerPressure, ConvergesWhereTheLoadedFaceHasAFreeRim) {
   Model model = make_model(box_mesh(10, 1, 1, {10, 1, 1}, CellKind::tet10), {.youngs_modulus = 1000});
   model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
-  FaceLoad load{.name = "top", .pressures = {0.2}, .follower = true};
+  FaceLoad load{.name = "top", .pressures = {0.4}, .follower = true};
   load.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[2] > 1 - 1e-9; });
   model.steps[0].face_loads = {load};
   model.settings.load_steps = 4;
