@@ -34,6 +34,24 @@ int heaviest(const std::array<std::uint8_t, 8>& labels, double x, double y, doub
   return known[best];
 }
 
+Mesh refined(const LabelGrid& grid, const std::vector<Seed>& seeds, const MeshingSettings& settings,
+             const Watcher& watcher, const Announcer& announce) {
+  CGAL::get_default_random() = CGAL::Random(0);
+  CGAL::Random random(0);
+  const Vec3 extent(grid.spacing.x() * (grid.size[0] - 1), grid.spacing.y() * (grid.size[1] - 1),
+                    grid.spacing.z() * (grid.size[2] - 1));
+  // Interfaces are located to a fiftieth of a voxel: far below the staircase of the image.
+  const double error = std::min(1e-3, 0.04 * grid.spacing.minCoeff() / extent.norm());
+  const auto label = [&grid](const refine::Kernel::Point_3& p) { return grid.at(Vec3(p.x(), p.y(), p.z())); };
+  const Domain domain(label, refine::Kernel::Iso_cuboid_3(0, 0, 0, extent.x(), extent.y(), extent.z()), error,
+                      CGAL::Null_subdomain_index(), &random);
+  C3t3 c3t3;
+  refine::insert_seeds(c3t3, domain, seeds);
+  if (c3t3.triangulation().dimension() < 3) return {};
+  refine::refine_and_improve(c3t3, domain, refine::criteria<Tr>(settings, watcher), settings, announce);
+  return refine::mesh_of(c3t3);
+}
+
 }  // namespace
 
 int LabelGrid::at(const Vec3& point) const {
@@ -58,20 +76,7 @@ int LabelGrid::at(const Vec3& point) const {
 
 Mesh fill_labels(const LabelGrid& grid, const std::vector<Seed>& seeds, const MeshingSettings& settings,
                  const Watcher& watcher, const Announcer& announce) {
-  CGAL::get_default_random() = CGAL::Random(0);
-  CGAL::Random random(0);
-  const Vec3 extent(grid.spacing.x() * (grid.size[0] - 1), grid.spacing.y() * (grid.size[1] - 1),
-                    grid.spacing.z() * (grid.size[2] - 1));
-  // Interfaces are located to a fiftieth of a voxel: far below the staircase of the image.
-  const double error = std::min(1e-3, 0.04 * grid.spacing.minCoeff() / extent.norm());
-  const auto label = [&grid](const refine::Kernel::Point_3& p) { return grid.at(Vec3(p.x(), p.y(), p.z())); };
-  const Domain domain(label, refine::Kernel::Iso_cuboid_3(0, 0, 0, extent.x(), extent.y(), extent.z()), error,
-                      CGAL::Null_subdomain_index(), &random);
-  C3t3 c3t3;
-  refine::insert_seeds(c3t3, domain, seeds);
-  if (c3t3.triangulation().dimension() < 3) return {};
-  refine::refine_and_improve(c3t3, domain, refine::criteria<Tr>(settings, watcher), settings, announce);
-  return refine::mesh_of(c3t3);
+  return refine::guarded([&] { return refined(grid, seeds, settings, watcher, announce); });
 }
 
 }  // namespace msml::operators

@@ -27,10 +27,8 @@ Polyhedron polyhedron_of(const Surface& surface) {
   return polyhedron;
 }
 
-}  // namespace
-
-Mesh fill_surface(const Surface& surface, const std::vector<Seed>& seeds, std::optional<double> feature_angle,
-                  const MeshingSettings& settings, const Watcher& watcher, const Announcer& announce) {
+Mesh refined(const Surface& surface, const std::vector<Seed>& seeds, std::optional<double> feature_angle,
+             const MeshingSettings& settings, const Watcher& watcher, const Announcer& announce) {
   CGAL::get_default_random() = CGAL::Random(0);
   CGAL::Random random(0);
   Domain domain(polyhedron_of(surface), &random);
@@ -46,6 +44,13 @@ Mesh fill_surface(const Surface& surface, const std::vector<Seed>& seeds, std::o
   if (c3t3.triangulation().dimension() < 3) return {};
   refine::refine_and_improve(c3t3, domain, criteria, settings, announce);
   return refine::mesh_of(c3t3);
+}
+
+}  // namespace
+
+Mesh fill_surface(const Surface& surface, const std::vector<Seed>& seeds, std::optional<double> feature_angle,
+                  const MeshingSettings& settings, const Watcher& watcher, const Announcer& announce) {
+  return refine::guarded([&] { return refined(surface, seeds, feature_angle, settings, watcher, announce); });
 }
 
 }  // namespace msml::operators

@@ -73,7 +73,12 @@ MeshingSettings meshing_settings(Context& context, const MeshingKeys& keys, doub
 Watcher progress_in_points(Reporter& reporter, double volume, const MeshingSettings& settings) {
   // A tetrahedron of circumradius r that refinement leaves has about 0.15 r^3, and there are about 5.5 of them a point.
   const double expected = std::max(100.0, volume / (0.15 * std::pow(settings.cell_size, 3)) / 5.5);
-  return [&reporter, expected](std::size_t points) {
+  const double limit = settings.radius_edge < 2 ? std::max(1e5, 50 * expected) : 1e300;
+  return [&reporter, expected, limit, ratio = settings.radius_edge](std::size_t points) {
+    if (static_cast<double>(points) > limit)
+      throw Error(fmt::format(
+          "refinement was stopped at {} points: cellRadiusEdgeRatio = {} is not reached; from 2 upwards it always ends",
+          with_commas(static_cast<long long>(points)), ratio));
     reporter.progress(std::min(0.95, static_cast<double>(points) / expected),
                       with_commas(static_cast<long long>(points)) + " points");
   };

@@ -7,6 +7,7 @@
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/Random.h>
+#include <CGAL/assertions.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/lloyd_optimize_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
@@ -60,6 +61,16 @@ bool taken(const Tr& tr, const Point& point, double clear) {
   const auto nearest = tr.nearest_power_vertex(point);
   const auto& weighted = tr.point(nearest);
   return CGAL::squared_distance(weighted.point(), point) - weighted.weight() <= clear * clear;
+}
+
+/// Runs a function; what CGAL finds wrong in itself becomes an internal Error.
+template <class F>
+Mesh guarded(F function) {
+  try {
+    return function();
+  } catch (const CGAL::Failure_exception& failure) {
+    throw Error(std::string("CGAL stopped the meshing: ") + failure.what(), {}, Failure::internal);
+  }
 }
 
 /// Inserts the points where the seeds cross the surface of the domain; returns how many.

@@ -8,6 +8,7 @@
 
 #include "operators/cgal_fill_surface.hpp"
 #include "operators/cgal_surface.hpp"
+#include "operators/mesh_flat.hpp"
 #include "operators/mesh_soup.hpp"
 
 namespace msml::operators {
@@ -45,6 +46,15 @@ std::vector<Seed> seeds_on(const Surface& surface) {
   return seeds;
 }
 
+/// Meshers put four points of a plane face into one tetrahedron now and then, above all beside sharp edges.
+void tell_of_flat(Mesh& mesh, Reporter& reporter) {
+  if (const long dropped = drop_flat(mesh); dropped > 0)
+    reporter.note(fmt::format("{} tetrahedra without height were taken off the boundary", with_commas(dropped)));
+  if (const long left = count_flat(mesh); left > 0)
+    reporter.warn(
+        fmt::format("{} tetrahedra have almost no height; pertube and exude improve them", with_commas(left)));
+}
+
 Mesh fill(Context& c, const Surface& given, const MeshingKeys& keys, std::optional<double> feature_angle) {
   SoupRepairs repairs;
   const Surface surface = repair(given, repairs);
@@ -59,6 +69,7 @@ Mesh fill(Context& c, const Surface& given, const MeshingKeys& keys, std::option
     throw Error(fmt::format("no tetrahedra: the body is too thin for facetSize = {}, facetDistance = {}, cellSize = {}",
                             settings.facet_size, settings.facet_distance, settings.cell_size));
   mesh.regions.clear();
+  tell_of_flat(mesh, c.reporter());
   return mesh;
 }
 

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
+#include "operators/cgal_meshing.hpp"
 #include "tests/operators/shared/mesh_facts.hpp"
 #include "tests/operators/shared/run_operator.hpp"
 #include "tests/operators/shared/shapes.hpp"
@@ -155,6 +157,35 @@ TEST(MeshVolumeFromSurface, WarnsWhereRefinementIsNotKnownToEnd) {
   run(tag, {{"surfaceMesh", sphere(1)}, {"cellSize", 0.5}, {"facetSize", 0.5}, {"cellRadiusEdgeRatio", 1.9}},
       &listener);
   EXPECT_THAT(listener.warnings, ::testing::ElementsAre(::testing::StartsWith("cellRadiusEdgeRatio = 1.9 is below 2")));
+}
+
+TEST(MeshVolumeFromSurface, RefinementThatRunsAwayIsStopped) {
+  Listener listener;
+  operators::MeshingSettings settings{.radius_edge = 1.001, .cell_size = 1};
+  const auto small_body = operators::progress_in_points(listener, 1, settings);
+  EXPECT_NO_THROW(small_body(100000));
+  EXPECT_THROW(small_body(100001), Error);
+  settings.radius_edge = 2;  // always ends, so nothing is in the way of a large mesh
+  EXPECT_NO_THROW(operators::progress_in_points(listener, 1, settings)(100000000));
+}
+
+TEST(MeshVolumeFromSurface, LeavesNoTetrahedronWithoutHeightBesideSharpEdges) {
+  const std::filesystem::path file = MSML_SOURCE_DIR "/data/meshes/anchor.off";
+  Registry registry;
+  add_operators(registry);
+  if (!std::filesystem::exists(file) || registry.format(file) == nullptr) GTEST_SKIP() << "no sample data: " << file;
+  Listener listener;
+  const auto mesh = output<Mesh>(
+      run(tag, {{"surfaceMesh", registry.read(file, Type::surface)}, {"preserveFeatures", true}}, &listener));
+  // Volumes of tetrahedra whose edges are near 1/30 of a body of size 1 are near 1e-5; four points of a plane give
+  // 1e-20.
+  EXPECT_GT(smallest_volume(*mesh), 1e-9);
+  // Every edge of the boundary has two faces still: triangles are two thirds of edges.
+  const auto surface = output<Surface>(run("ExtractSurfaceMesh", {{"mesh", std::make_shared<const Mesh>(*mesh)}}));
+  EXPECT_EQ(
+      error_of(tag,
+               {{"surfaceMesh", std::make_shared<const Surface>(*surface)}, {"cellSize", 0.2}, {"facetSize", 0.2}}),
+      "no error");
 }
 
 }  // namespace

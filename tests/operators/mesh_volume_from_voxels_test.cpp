@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <random>
 
+#include "operators/mesh_labels.hpp"
 #include "tests/operators/shared/mesh_facts.hpp"
 #include "tests/operators/shared/run_operator.hpp"
 
@@ -113,6 +114,39 @@ TEST(MeshVolumeFromVoxels, SmallSeparatePartsAreNotMissed) {
   EXPECT_THAT(region_volumes(*mesh), ElementsAre(Key(1), Key(13), Key(14), Key(15), Key(16)));
   EXPECT_EQ(euler_characteristic(*mesh), 8);  // eight balls
   EXPECT_TRUE(listener.warnings.empty());
+}
+
+TEST(MeshVolumeFromVoxels, AThinPlateKeepsItsLabel) {
+  // One voxel thick, and facets may lie ten voxels off.
+  Image image = make_image<std::uint8_t>({60, 60, 60});
+  fill<std::uint8_t>(image, {20, 20, 20}, {40, 40, 40}, 1);
+  fill<std::uint8_t>(image, {5, 5, 50}, {55, 55, 51}, 2);
+  Listener listener;
+  const auto mesh = output<Mesh>(run(
+      tag, {{"image", stored(image)}, {"facetSize", 30.0}, {"facetDistance", 10.0}, {"cellSize", 30.0}}, &listener));
+  EXPECT_THAT(region_volumes(*mesh), ElementsAre(Key(1), Key(2)));
+  EXPECT_TRUE(listener.warnings.empty());
+}
+
+TEST(MeshVolumeFromVoxels, APartWithoutATetrahedronIsFoundMissingAndSeededAllOver) {
+  Image image = make_image<std::uint8_t>({20, 8, 8});
+  fill<std::uint8_t>(image, {1, 1, 1}, {6, 6, 6}, 9);
+  fill<std::uint8_t>(image, {12, 1, 1}, {17, 6, 6}, 9);
+  const operators::LabelParts parts = operators::label_parts(image, 50);
+  ASSERT_EQ(parts.parts.size(), 2u);
+  EXPECT_EQ(parts.parts[1].voxels, 125);
+  EXPECT_EQ(parts.parts[1].depth, 2);  // the middle voxel of five
+  Mesh mesh;  // one tetrahedron in the first part; the grid has one voxel of rim, so voxel 3 has its centre at 4
+  mesh.points.resize(4, 3);
+  mesh.points << 4, 4, 4, 5, 4, 4, 4, 5, 4, 4, 4, 5;
+  mesh.add_cell(CellKind::tet4, std::array<int, 4>{0, 1, 2, 3}.data(), 1);
+  EXPECT_EQ(operators::parts_present(parts, mesh), (std::vector<bool>{true, false}));
+  const auto seeds = operators::dense_seeds_of(parts, 1);
+  EXPECT_EQ(seeds.size(), 125u * 6);
+  for (const auto& seed : seeds) {
+    EXPECT_EQ(parts.grid.at(seed.from), 1);
+    EXPECT_EQ(parts.grid.at(seed.to), 0);
+  }
 }
 
 TEST(MeshVolumeFromVoxels, MeetsTheCriteriaItIsGiven) {
