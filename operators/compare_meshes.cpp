@@ -22,15 +22,21 @@ using Simplex = std::array<int, 4>;  ///< node ids, the first dimension + 1 of t
 /// tet10 is cut along the diagonal 4-9.
 std::vector<Simplex> simplices(CellKind kind) {
   switch (kind) {
-    case CellKind::vertex: return {};
-    case CellKind::line2: return {{0, 1}};
-    case CellKind::line3: return {{0, 2}, {2, 1}};
-    case CellKind::tri3: return {{0, 1, 2}};
-    case CellKind::tri6: return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
-    case CellKind::tet4: return {{0, 1, 2, 3}};
+    case CellKind::vertex:
+      return {};
+    case CellKind::line2:
+      return {{0, 1}};
+    case CellKind::line3:
+      return {{0, 2}, {2, 1}};
+    case CellKind::tri3:
+      return {{0, 1, 2}};
+    case CellKind::tri6:
+      return {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+    case CellKind::tet4:
+      return {{0, 1, 2, 3}};
     case CellKind::tet10:
-      return {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}, {4, 9, 5, 6}, {4, 9, 6, 7}, {4, 9, 7, 8},
-              {4, 9, 8, 5}};
+      return {{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3},
+              {4, 9, 5, 6}, {4, 9, 6, 7}, {4, 9, 7, 8}, {4, 9, 8, 5}};
   }
   return {};
 }
@@ -60,7 +66,8 @@ Parts parts_of(const Mesh& mesh, const Points& points) {
     const CellKind kind = mesh.kinds[static_cast<std::size_t>(c)];
     if (dimension(kind) != parts.dimension) continue;
     for (Simplex s : simplices(kind)) {
-      for (int k = 0; k <= parts.dimension; ++k) s[static_cast<std::size_t>(k)] = mesh.cell(c)[s[static_cast<std::size_t>(k)]];
+      for (int k = 0; k <= parts.dimension; ++k)
+        s[static_cast<std::size_t>(k)] = mesh.cell(c)[s[static_cast<std::size_t>(k)]];
       parts.simplices.push_back(s);
       parts.measures.push_back(measure(points, s, parts.dimension));
       parts.cells.push_back(c);
@@ -102,8 +109,7 @@ const Field* partner(const std::vector<Field>& fields, const Field& wanted) {
 /// Cell fields with the region ids as one more.
 std::vector<Field> cell_fields_of(const Mesh& mesh) {
   std::vector<Field> fields = mesh.cell_fields;
-  if (!mesh.regions.empty())
-    fields.push_back({.name = "region", .values = {mesh.regions.begin(), mesh.regions.end()}});
+  if (!mesh.regions.empty()) fields.push_back({.name = "region", .values = {mesh.regions.begin(), mesh.regions.end()}});
   return fields;
 }
 
@@ -227,10 +233,11 @@ Comparison compare(const Mesh& a, const Mesh& b) {
     result.outside += place.distance > 0;
     result.outside_distance = std::max(result.outside_distance, place.distance);
   }
-  compare_fields(a.point_fields, b.point_fields, false, [&](const Field& f) { return nodes(f, false); }, parts, at_b,
-                 result);
+  compare_fields(
+      a.point_fields, b.point_fields, false, [&](const Field& f) { return nodes(f, false); }, parts, at_b, result);
   const Interpolation cells(a, at_a, middles);
-  compare_fields(cells_a, cells_b, true, [&](const Field& f) { return cells(f, true); }, parts, middles, result);
+  compare_fields(
+      cells_a, cells_b, true, [&](const Field& f) { return cells(f, true); }, parts, middles, result);
   return result;
 }
 

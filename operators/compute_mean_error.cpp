@@ -57,9 +57,10 @@ double mean_error(const Mesh& initial, const Mesh& reference, const Mesh& test, 
     motion += (initial.points.row(i) - reference.points.row(i)).norm();
   }
   if (!(motion > 0))
-    throw Error(fmt::format("no node of the {} compared moves from initialMesh to referenceMesh, so there is nothing to "
-                            "relate the error to",
-                            nodes.size()));
+    throw Error(
+        fmt::format("no node of the {} compared moves from initialMesh to referenceMesh, so there is nothing to "
+                    "relate the error to",
+                    nodes.size()));
   return difference / motion;
 }
 
@@ -68,8 +69,9 @@ double mean_error(const Mesh& initial, const Mesh& reference, const Mesh& test, 
 Operator compute_mean_error() {
   Operator op("ComputeMeanError",
               "Relative mean error of node positions: sum |reference - test| / sum |initial - reference|.");
-  op.note("MSML divided this relative error by the number of nodes once more, so that it vanished on fine meshes; here "
-          "it is the mean distance between test and reference over the mean displacement of the reference.");
+  op.note(
+      "MSML divided this relative error by the number of nodes once more, so that it vanished on fine meshes; here "
+      "it is the mean distance between test and reference over the mean displacement of the reference.");
   const auto initial = op.input<Mesh>("initialMesh", "before the deformation");
   const auto reference = op.input<Mesh>("referenceMesh", "deformed, taken as true; same nodes");
   const auto test = op.input<Mesh>("testMesh", "deformed, to be judged; same nodes");

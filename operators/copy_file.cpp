@@ -18,10 +18,12 @@ File existing(const File& file) {
 
 Operator copy_file() {
   Operator op("copyFile", "Copies a file, byte by byte, to another name.");
-  op.note("Of a series of states the last file is copied. The extension of the copy is not looked at: nothing is "
-          "converted.");
-  op.note("filename_out is relative to the output folder, and a folder in it is kept; MSML dropped that folder where "
-          "working_directory is true. Here working_directory is accepted and has no effect.");
+  op.note(
+      "Of a series of states the last file is copied. The extension of the copy is not looked at: nothing is "
+      "converted.");
+  op.note(
+      "filename_out is relative to the output folder, and a folder in it is kept; MSML dropped that folder where "
+      "working_directory is true. Here working_directory is accepted and has no effect.");
   const auto in = op.input<File>("filename_in", "the file to copy, or the output of a simulation");
   op.parameter<bool>("working_directory", {.fallback = true, .doc = "accepted for old scenes, without effect"});
   const auto copy = op.output<File>("copy", "the file");

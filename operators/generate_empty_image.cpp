@@ -29,10 +29,9 @@ Operator generate_empty_image() {
                   .fallback = std::vector<double>{1, 1, 1},
                   .counts = {3},
                   .doc = "distance between the centres of neighbours along x, y and z"});
-  const auto origin = op.parameter<std::vector<double>>("origin", {.unit = "length",
-                                                                   .fallback = std::vector<double>{0, 0, 0},
-                                                                   .counts = {3},
-                                                                   .doc = "centre of the first voxel"});
+  const auto origin = op.parameter<std::vector<double>>(
+      "origin",
+      {.unit = "length", .fallback = std::vector<double>{0, 0, 0}, .counts = {3}, .doc = "centre of the first voxel"});
   const auto image = op.output<Image>("image", "dim voxels of the value 0");
   op.target("targetImageFilename", image, "file to write the image to");
   op.run([=](Context& c) { c.set(image, zeros(c.get(dim), vec(c.get(origin)), vec(c.get(spacing)))); });

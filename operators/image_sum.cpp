@@ -13,8 +13,8 @@ namespace {
 void require_same_grid(const Image& first, const Image& other, std::size_t number) {
   constexpr double tolerance = 1e-6;  // of a voxel: headers in single precision still agree
   const auto differ = [&](const char* what, const std::string& mine, const std::string& theirs) {
-    throw Error(fmt::format("image {} does not lie on the grid of the first image: {} {}, not {}", number, what, theirs,
-                            mine));
+    throw Error(
+        fmt::format("image {} does not lie on the grid of the first image: {} {}, not {}", number, what, theirs, mine));
   };
   const auto text = [](const auto& v) { return fmt::format("({} {} {})", v[0], v[1], v[2]); };
   if (first.size != other.size) differ("size", text(first.size), text(other.size));
@@ -23,7 +23,8 @@ void require_same_grid(const Image& first, const Image& other, std::size_t numbe
   const double voxel = first.spacing.minCoeff();
   if ((first.spacing - other.spacing).norm() > tolerance * voxel)
     differ("spacing", text(first.spacing), text(other.spacing));
-  if ((first.origin - other.origin).norm() > tolerance * voxel) differ("origin", text(first.origin), text(other.origin));
+  if ((first.origin - other.origin).norm() > tolerance * voxel)
+    differ("origin", text(first.origin), text(other.origin));
   if ((first.direction - other.direction).norm() > tolerance)
     throw Error(fmt::format("image {} is turned differently from the first image", number));
 }
@@ -51,10 +52,12 @@ Image sum_of(const ImageList& images, bool normalize) {
 
 Operator image_sum() {
   Operator op("ImageSum", "The sum of images on one grid, voxel by voxel; with normalize their mean.");
-  op.note("The result is of type double, so that sums of bytes do not overflow. Images on different grids are an "
-          "error.");
-  const auto images = op.input<ImageList>("image", "images of equal size, origin, spacing and direction; a pattern such "
-                                                   "as part*.vti takes all that match");
+  op.note(
+      "The result is of type double, so that sums of bytes do not overflow. Images on different grids are an "
+      "error.");
+  const auto images = op.input<ImageList>("image",
+                                          "images of equal size, origin, spacing and direction; a pattern such "
+                                          "as part*.vti takes all that match");
   const auto normalize =
       op.parameter<bool>("normalize", {.fallback = false, .doc = "true: divide by the number of images"});
   const auto sum = op.output<Image>("SumImage", "double");

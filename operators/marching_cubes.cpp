@@ -22,8 +22,7 @@ Operator marching_cubes();
 namespace {
 
 void require_crossing(const Image& image, double iso) {
-  if (image.components != 1)
-    throw Error(fmt::format("the image has {} components; one is needed", image.components));
+  if (image.components != 1) throw Error(fmt::format("the image has {} components; one is needed", image.components));
   if (*std::min_element(image.size.begin(), image.size.end()) < 2)
     throw Error(fmt::format("the image of {} x {} x {} voxels is flat", image.size[0], image.size[1], image.size[2]));
   double low = image.at(0), high = low;
@@ -60,8 +59,9 @@ Surface level_surface(const Image& image, double iso) {
 Operator marching_cubes() {
   Operator op("vtkMarchingCube", "The triangle surface where the image has the value isoValue, linear between voxels.");
   op.source("vtkMarchingCubes; Lorensen and Cline 1987, doi 10.1145/37402.37422");
-  op.note("Triangles face the lower values. An object that touches the border of the image gives an open surface, "
-          "with a warning.");
+  op.note(
+      "Triangles face the lower values. An object that touches the border of the image gives an open surface, "
+      "with a warning.");
   const auto image = op.input<Image>("image", "scalar, at least two voxels along each side");
   const auto iso = op.parameter("isoValue", {.doc = "above the least and at most the largest value of the image"});
   const auto surface = op.output<Surface>("targetsurface", "triangles, facing the lower values");
@@ -69,8 +69,8 @@ Operator marching_cubes() {
   op.run([=](Context& c) {
     Surface made = level_surface(c.get(image), c.get(iso));
     if (const Seams seams = seams_of(made); seams.open > 0)
-      c.reporter().warn(fmt::format("the surface is open along {} edges: the object touches the border of the image",
-                                    seams.open));
+      c.reporter().warn(
+          fmt::format("the surface is open along {} edges: the object touches the border of the image", seams.open));
     c.set(surface, std::move(made));
   });
   return op;

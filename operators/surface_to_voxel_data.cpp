@@ -44,8 +44,9 @@ Operator surface_to_voxel_data() {
   Operator op("SurfaceToVoxelDataOperator",
               "A closed surface as a grey image: 255 inside, 0 outside, blurred in between by a Gaussian.");
   op.source("vtkPolyDataToImageStencil, vtkImageGaussianSmooth");
-  op.note("The longest side of the surface is divided into 2^accuracy_level cubic voxels. The level surface at 127.5 "
-          "is the smoothed object.");
+  op.note(
+      "The longest side of the surface is divided into 2^accuracy_level cubic voxels. The level surface at 127.5 "
+      "is the smoothed object.");
   op.note("MSML did not mark targetImageFilename as a target and did not say what accuracy_level counts.");
   const auto surface = op.input<Surface>("surfaceMesh", "closed");
   const auto level = op.parameter(
@@ -59,12 +60,14 @@ Operator surface_to_voxel_data() {
   op.run([=](Context& c) {
     const Surface& closed = c.get(surface);
     if (const Seams seams = seams_of(closed); seams.open > 0)
-      throw Error(fmt::format("the surface is not closed: {} edges belong to one triangle only (the first at {:.6g} "
-                              "{:.6g} {:.6g})",
-                              seams.open, seams.where[0], seams.where[1], seams.where[2]));
+      throw Error(
+          fmt::format("the surface is not closed: {} edges belong to one triangle only (the first at {:.6g} "
+                      "{:.6g} {:.6g})",
+                      seams.open, seams.where[0], seams.where[1], seams.where[2]));
     const double voxel = longest_side(closed) / std::exp2(c.get(level));
     const double sigma = c.get(deviation);
-    const double margin = voxel * std::ceil(kernel_radius * sigma);  // the blur fades out inside the image
+    // Twice the kernel: VTK raises the weights of a kernel that the border cuts, so none of these may see the object.
+    const double margin = 2 * voxel * std::ceil(kernel_radius * sigma);
     Image binary = as_float(filled(closed, grid_around(closed, voxel, margin)));
     c.set(image, sigma > 0 ? smoothed(binary, sigma) : std::move(binary));
   });

@@ -15,8 +15,9 @@ namespace {
 Surface closed_surface(const Surface& surface, bool fill_holes, Reporter& reporter) {
   const Seams seams = seams_of(surface);
   const auto faults = [](const Seams& s) {
-    return fmt::format("{} edges belong to one triangle only and {} to more than two (the first at {:.6g} {:.6g} {:.6g})",
-                       s.open, s.crowded, s.where[0], s.where[1], s.where[2]);
+    return fmt::format(
+        "{} edges belong to one triangle only and {} to more than two (the first at {:.6g} {:.6g} {:.6g})", s.open,
+        s.crowded, s.where[0], s.where[1], s.where[2]);
   };
   if (seams.open == 0) return surface;
   if (!fill_holes) throw Error("the surface is not closed: " + faults(seams));
@@ -33,9 +34,10 @@ Surface closed_surface(const Surface& surface, bool fill_holes, Reporter& report
 Operator voxelize_surface() {
   Operator op("VoxelizeSurfaceMesh", "A closed surface as an image: 255 where the voxel's centre is inside, else 0.");
   op.source("vtkPolyDataToImageStencil, vtkFillHolesFilter");
-  op.note("Exactly one of resolution, isotropicVoxelSize and referenceCoordinateGrid is given; 0 means not given. "
-          "Without a reference grid one empty layer of voxels is added on all sides, so that the image of an object "
-          "never touches the border.");
+  op.note(
+      "Exactly one of resolution, isotropicVoxelSize and referenceCoordinateGrid is given; 0 means not given. "
+      "Without a reference grid one empty layer of voxels is added on all sides, so that the image of an object "
+      "never touches the border.");
   op.note("MSML voxelizes an open surface without a word; here it is an error unless its holes can be filled.");
   const auto surface = op.input<Surface>("surfaceMesh", "closed, or with holes that may be filled");
   const auto resolution = op.parameter<Integer>(
@@ -49,25 +51,28 @@ Operator voxelize_surface() {
   const auto reference =
       op.input<Image>("referenceCoordinateGrid", "an image whose grid is taken; its values mean nothing", true);
   const auto no_filling = op.parameter<bool>(
-      "disableFillHoles", {.fallback = false, .doc = "true: a surface with holes is an error instead of being repaired"});
-  const auto margin = op.parameter("additionalIsotropicMargin", {.unit = "length",
-                                                                 .range = nonnegative(),
-                                                                 .fallback = 0.0,
-                                                                 .doc = "added to the bounding box on all sides; has no "
-                                                                        "effect with a reference grid"});
+      "disableFillHoles",
+      {.fallback = false, .doc = "true: a surface with holes is an error instead of being repaired"});
+  const auto margin =
+      op.parameter("additionalIsotropicMargin", {.unit = "length",
+                                                 .range = nonnegative(),
+                                                 .fallback = 0.0,
+                                                 .doc = "added to the bounding box on all sides; has no "
+                                                        "effect with a reference grid"});
   const auto image = op.output<Image>("image", "uint8, 0 and 255");
   op.target("targetImageFilename", image, "file to write the image to");
   op.run([=](Context& c) {
     const int given = (c.get(resolution) > 0) + (c.get(voxel_size) > 0) + c.has(reference);
     if (given != 1)
-      throw Error(fmt::format("{} of resolution, isotropicVoxelSize and referenceCoordinateGrid are given; exactly one "
-                              "is needed",
-                              given));
+      throw Error(
+          fmt::format("{} of resolution, isotropicVoxelSize and referenceCoordinateGrid are given; exactly one "
+                      "is needed",
+                      given));
     const Surface whole = closed_surface(c.get(surface), !c.get(no_filling), c.reporter());
     if (c.has(reference)) return c.set(image, filled(whole, c.get(reference)));
-    const double voxel = c.get(voxel_size) > 0 ? c.get(voxel_size)
-                                               : (longest_side(whole) + 2 * c.get(margin)) /
-                                                     static_cast<double>(c.get(resolution));
+    const double voxel = c.get(voxel_size) > 0
+                             ? c.get(voxel_size)
+                             : (longest_side(whole) + 2 * c.get(margin)) / static_cast<double>(c.get(resolution));
     c.set(image, filled(whole, grid_around(whole, voxel, c.get(margin))));
   });
   return op;

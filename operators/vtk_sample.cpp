@@ -5,10 +5,12 @@
 #include <vtkCell.h>
 #include <vtkGenericCell.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkSmartPointer.h>
 #include <vtkStaticCellLocator.h>
 #include <vtkUnstructuredGrid.h>
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -26,6 +28,35 @@ struct Sampler::Tree {
   bool solid = false;
   double tolerance2 = 0;
 };
+
+namespace {
+
+/// Newton's method for the place of x in a solid cell; VTK stops at about four digits in quadratic ones.
+void refine(vtkCell& cell, const std::array<double, 3>& x, std::array<double, 3>& local,
+            std::array<double, 10>& weights) {
+  constexpr int steps = 6;  // digits double in each
+  std::array<double, 30> derivatives{};
+  const vtkIdType n = cell.GetNumberOfPoints();
+  for (int step = 0; step < steps; ++step) {
+    cell.InterpolateFunctions(local.data(), weights.data());
+    cell.InterpolateDerivs(local.data(), derivatives.data());
+    Vec3 residual(x[0], x[1], x[2]);
+    Mat3 jacobian = Mat3::Zero();
+    for (vtkIdType i = 0; i < n; ++i) {
+      Vec3 point;
+      cell.GetPoints()->GetPoint(i, point.data());
+      residual -= weights[static_cast<std::size_t>(i)] * point;
+      for (int d = 0; d < 3; ++d) jacobian.col(d) += derivatives[static_cast<std::size_t>(d * n + i)] * point;
+    }
+    if (!(std::abs(jacobian.determinant()) > 0)) return;
+    const Vec3 change = jacobian.inverse() * residual;
+    if (!(change.norm() < 1)) return;  // leaves the cell: keep the last place
+    for (int d = 0; d < 3; ++d) local[static_cast<std::size_t>(d)] += change[d];
+  }
+  cell.InterpolateFunctions(local.data(), weights.data());
+}
+
+}  // namespace
 
 Sampler::Sampler(const Mesh& mesh, const Points& points) : tree_(std::make_unique<Tree>()) {
   int highest = 0;
@@ -57,8 +88,7 @@ Place Sampler::find(const Vec3& point) const {
   int sub = 0;
   vtkIdType id = -1;
   if (tree_->solid)
-    id = tree_->locator->FindCell(x.data(), tree_->tolerance2, tree_->cell.Get(), local.data(),
-                                  weights.data());
+    id = tree_->locator->FindCell(x.data(), tree_->tolerance2, tree_->cell.Get(), local.data(), weights.data());
   if (id < 0) {
     tree_->locator->FindClosestPoint(x.data(), at.data(), tree_->cell.Get(), id, sub, distance2);
     if (id < 0) throw Error("no cell is near the point; the mesh is degenerate");
@@ -67,6 +97,7 @@ Place Sampler::find(const Vec3& point) const {
     std::array<double, 3> nearest{};
     tree_->cell->EvaluatePosition(at.data(), nearest.data(), sub, local.data(), ignored, weights.data());
   }
+  if (tree_->solid) refine(*tree_->cell, distance2 > 0 ? at : x, local, weights);
   const auto n = static_cast<std::size_t>(tree_->cell->GetNumberOfPoints());
   return {.cell = tree_->ids[static_cast<std::size_t>(id)],
           .distance = distance2 <= tree_->tolerance2 ? 0 : std::sqrt(distance2),

@@ -45,7 +45,8 @@ Seams seams_of(const Surface& surface) {
   std::vector<std::array<int, 2>> edges;
   edges.reserve(3 * whole.triangles.size());
   for (const auto& t : whole.triangles)
-    for (std::size_t k = 0; k < 3; ++k) edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
+    for (std::size_t k = 0; k < 3; ++k)
+      edges.push_back({std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])});
   std::sort(edges.begin(), edges.end());
   Seams seams;
   for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {

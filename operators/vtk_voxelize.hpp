@@ -10,8 +10,8 @@ namespace msml::operators {
 
 /// How the triangles meet, after points at the same place are joined.
 struct Seams {
-  int open = 0;     ///< edges of one triangle only
-  int crowded = 0;  ///< edges of more than two triangles
+  int open = 0;               ///< edges of one triangle only
+  int crowded = 0;            ///< edges of more than two triangles
   Vec3 where = Vec3::Zero();  ///< the middle of the first open (else crowded) edge
 };
 Seams seams_of(const Surface& surface);
@@ -28,7 +28,8 @@ Image grid_around(const Surface& surface, double voxel, double margin);
 double longest_side(const Surface& surface);
 
 /// 255 in the voxels whose centre lies inside the surface, else 0, on the grid of `grid` (turned or not).
-/// The surface is closed; where parts overlap, the inside is where a line from outside has crossed it an odd number of times.
+/// The surface is closed; where parts overlap, the inside is where a line from outside has crossed it an odd number of
+/// times.
 Image filled(const Surface& surface, const Image& grid);
 
 }  // namespace msml::operators

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK's legacy files.
 #include <fmt/format.h>
-#include <vtkDataSetWriter.h>
 #include <vtkGenericDataObjectReader.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataReader.h>
+#include <vtkPolyDataWriter.h>
 #include <vtkSmartPointer.h>
 #include <vtkStructuredPoints.h>
 #include <vtkStructuredPointsReader.h>
+#include <vtkStructuredPointsWriter.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkUnstructuredGridReader.h>
+#include <vtkUnstructuredGridWriter.h>
 
 #include "operators/formats/formats.hpp"
+#include "operators/formats/legacy_check.hpp"
 #include "operators/vtk_convert.hpp"
 #include "operators/vtk_guard.hpp"
 
@@ -42,6 +45,7 @@ Value read_poly(const std::filesystem::path& path, Type wanted) {
 }
 
 Value read(const std::filesystem::path& path, Type wanted) {
+  check_legacy_cells(text_of(path));
   const vtkNew<vtkGenericDataObjectReader> probe;
   probe->SetFileName(path.c_str());
   const int kind = probe->ReadOutputType();
@@ -60,23 +64,25 @@ Value read(const std::filesystem::path& path, Type wanted) {
   throw Error("is no VTK file that holds an unstructured grid, polygonal data or structured points");
 }
 
-vtkSmartPointer<vtkDataObject> data_of(const Value& value) {
-  if (const auto* mesh = std::get_if<MeshPtr>(&value)) return to_vtk(**mesh);
-  if (const auto* surface = std::get_if<SurfacePtr>(&value)) return to_vtk(**surface);
-  require_upright(*std::get<ImagePtr>(value));
-  const auto data = to_vtk(*std::get<ImagePtr>(value));
-  auto points = vtkSmartPointer<vtkStructuredPoints>::New();
-  points->ShallowCopy(data);
-  return points;
-}
-
-void write(const Value& value, const std::filesystem::path& path) {
-  const vtkNew<vtkDataSetWriter> writer;
-  writer->SetInputData(data_of(value));
+template <class Writer>
+void write_as(vtkDataObject* data, const std::filesystem::path& path) {
+  const vtkNew<Writer> writer;
+  writer->SetInputData(data);
   writer->SetFileName(path.c_str());
   writer->SetFileTypeToBinary();
   writer->SetFileVersion(vtkDataWriter::VTK_LEGACY_READER_VERSION_4_2);  // MSML's tools and old ParaViews stop there
   if (writer->Write() == 0) throw Error("cannot be written");
+}
+
+void write(const Value& value, const std::filesystem::path& path) {
+  if (const auto* mesh = std::get_if<MeshPtr>(&value)) return write_as<vtkUnstructuredGridWriter>(to_vtk(**mesh), path);
+  if (const auto* surface = std::get_if<SurfacePtr>(&value))
+    return write_as<vtkPolyDataWriter>(to_vtk(**surface), path);
+  const Image& image = *std::get<ImagePtr>(value);
+  require_upright(image);
+  const vtkNew<vtkStructuredPoints> points;
+  points->ShallowCopy(to_vtk(image));
+  write_as<vtkStructuredPointsWriter>(points, path);
 }
 
 }  // namespace

@@ -78,6 +78,12 @@ std::string_view Scanner::line() {
   return text_.substr(start, end - start);
 }
 
+std::string_view Scanner::raw(std::size_t n) {
+  if (n > text_.size() - at_) throw Error(fmt::format("is cut off: {} bytes are missing", n - (text_.size() - at_)));
+  at_ += n;
+  return text_.substr(at_ - n, n);
+}
+
 int Scanner::line_number() const {
   return 1 + static_cast<int>(std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n'));
 }

@@ -21,6 +21,8 @@ class Scanner {
   int count();
   /// The rest of the current line.
   std::string_view line();
+  /// The next n bytes as they are; throws Error where fewer are left.
+  std::string_view raw(std::size_t n);
   /// The line of the cursor, from 1.
   int line_number() const;
 

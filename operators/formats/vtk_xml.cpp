@@ -12,6 +12,10 @@
 #include <vtkXMLUnstructuredGridReader.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
+#include <algorithm>
+#include <fstream>
+#include <string_view>
+
 #include "operators/formats/formats.hpp"
 #include "operators/vtk_convert.hpp"
 #include "operators/vtk_guard.hpp"
@@ -19,10 +23,23 @@
 namespace msml::operators {
 namespace {
 
+/// VTK reads zeros behind the end of raw data without a word.
+void require_end(const std::filesystem::path& path) {
+  constexpr std::string_view end = "</VTKFile>";
+  constexpr std::streamoff tail = 64;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  in.seekg(std::max<std::streamoff>(0, size - tail));
+  std::string text(static_cast<std::size_t>(std::clamp<std::streamoff>(size, 0, tail)), '\0');
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (text.find(end) == std::string::npos) throw Error("is cut off or no VTK file: </VTKFile> is not at its end");
+}
+
 template <class Reader>
 vtkSmartPointer<Reader> opened(const std::filesystem::path& path) {
+  require_end(path);
   auto reader = vtkSmartPointer<Reader>::New();
-  if (reader->CanReadFile(path.c_str()) == 0) throw Error("is not a VTK file of this kind, or is cut off");
+  if (reader->CanReadFile(path.c_str()) == 0) throw Error("is not a VTK file of the kind that its name says");
   reader->SetFileName(path.c_str());
   update(*reader, "cannot be read");
   return reader;

@@ -79,8 +79,9 @@ TEST(ImageFiles, FormatsWithoutDirectionRefuseATurnedImage) {
 
 TEST(ImageFiles, AnInrimageByHandIsRead) {
   const test::Folder folder("msml_inr");
-  std::string header = "#INRIMAGE-4#{\nXDIM=2\nYDIM=1\nZDIM=1\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=16 bits\nSCALE=2**0\n"
-                       "CPU=sun\nVX=0.5\nVY=1\nVZ=2\n";
+  std::string header =
+      "#INRIMAGE-4#{\nXDIM=2\nYDIM=1\nZDIM=1\nVDIM=1\nTYPE=unsigned fixed\nPIXSIZE=16 bits\nSCALE=2**0\n"
+      "CPU=sun\nVX=0.5\nVY=1\nVZ=2\n";
   header.append(256 - 4 - header.size(), '\n');
   test::put_bytes(folder / "i.inr", header + "##}\n" + std::string("\x01\x02\x00\x03", 4));
   const ImagePtr image = std::get<ImagePtr>(test::all().read(folder / "i.inr", Type::image));
@@ -113,9 +114,10 @@ TEST_P(DamagedImageFile, IsAnErrorOrAValidImageAndPrintsNothing) {
   const std::string bytes = test::bytes_of(good);
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
+  int unnoticed = 0;
   for (std::size_t n = 0; n < bytes.size(); n += 1 + bytes.size() / 60) {
     test::put_bytes(bad, bytes.substr(0, n));
-    EXPECT_NE(test::read_error(bad, Type::image), "no error") << n << " bytes of " << bytes.size();
+    unnoticed += test::read_error(bad, Type::image) == "no error";
   }
   for (std::size_t n = 0; n < bytes.size(); n += 1 + bytes.size() / 300) {
     std::string damaged = bytes;
@@ -125,6 +127,7 @@ TEST_P(DamagedImageFile, IsAnErrorOrAValidImageAndPrintsNothing) {
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(unnoticed, 0);
 }
 INSTANTIATE_TEST_SUITE_P(All, DamagedImageFile,
                          testing::Values(".vti", ".vtk", ".inr", ".inr.gz", ".nii", ".nii.gz", ".mha", ".nrrd"));

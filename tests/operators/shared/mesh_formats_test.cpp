@@ -98,10 +98,11 @@ TEST(MeditFile, RefusesQuadraticCellsAndNamesFormatsThatHoldThem) {
 TEST(GmshFile, TakesMidNodesInGmshsOrder) {
   // A tet10 as Gmsh numbers it: mid nodes on 01 12 20 03 23 13; x of each mid node tells its edge.
   const test::Folder folder("msml_gmsh");
-  test::put_bytes(folder / "t.msh",
-                  "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 5 \"liver\"\n$EndPhysicalNames\n$Nodes\n10\n"
-                  "11 0 0 0\n12 1 0 0\n13 0 1 0\n14 0 0 1\n15 .5 0 0\n16 .5 .5 0\n17 0 .5 0\n18 0 0 .5\n19 0 .5 .5\n"
-                  "20 .5 0 .5\n$EndNodes\n$Elements\n1\n1 11 2 5 1 11 12 13 14 15 16 17 18 19 20\n$EndElements\n");
+  test::put_bytes(
+      folder / "t.msh",
+      "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 5 \"liver\"\n$EndPhysicalNames\n$Nodes\n10\n"
+      "11 0 0 0\n12 1 0 0\n13 0 1 0\n14 0 0 1\n15 .5 0 0\n16 .5 .5 0\n17 0 .5 0\n18 0 0 .5\n19 0 .5 .5\n"
+      "20 .5 0 .5\n$EndNodes\n$Elements\n1\n1 11 2 5 1 11 12 13 14 15 16 17 18 19 20\n$EndElements\n");
   const MeshPtr mesh = std::get<MeshPtr>(test::all().read(folder / "t.msh", Type::mesh));
   EXPECT_THAT(mesh->regions, ElementsAre(5));
   const auto middle = [&](int node) { return Vec3(mesh->points.row(mesh->cell(0)[node])); };
@@ -129,8 +130,9 @@ INSTANTIATE_TEST_SUITE_P(All, SurfaceFile,
 TEST(SurfaceFile, OfATetMeshIsRefusedAndNamesTheOperatorThatHelps) {
   const test::Folder folder("msml_tets");
   test::all().write(std::make_shared<const Mesh>(test::five_tets()), folder / "m.vtu");
-  EXPECT_EQ(test::read_error(folder / "m.vtu", Type::surface),
-            "m.vtu: holds 8 points, 5 tet4, not triangles alone, so it is no Surface; ExtractSurfaceMesh makes one of it");
+  EXPECT_EQ(
+      test::read_error(folder / "m.vtu", Type::surface),
+      "m.vtu: holds 8 points, 5 tet4, not triangles alone, so it is no Surface; ExtractSurfaceMesh makes one of it");
 }
 
 TEST(SurfaceFile, QuadsBecomeTriangles) {
@@ -148,9 +150,10 @@ TEST(SurfaceFile, QuadsBecomeTriangles) {
 
 TEST(MeshFiles, CellsOfOtherKindsAreCountedAndNamed) {
   const test::Folder folder("msml_hexa");
-  test::put_bytes(folder / "h.vtk",
-                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1 0 0 1 1 0 0 1 0 "
-                  "0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 2 14\n8 0 1 2 3 4 5 6 7\n4 0 1 2 3\nCELL_TYPES 2\n12\n9\n");
+  test::put_bytes(
+      folder / "h.vtk",
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 float\n0 0 0 1 0 0 1 1 0 0 1 0 "
+      "0 0 1 1 0 1 1 1 1 0 1 1\nCELLS 2 14\n8 0 1 2 3 4 5 6 7\n4 0 1 2 3\nCELL_TYPES 2\n12\n9\n");
   EXPECT_EQ(test::read_error(folder / "h.vtk", Type::mesh),
             "h.vtk: holds 1 Quad (VTK cell type 9), 1 Hexahedron (VTK cell type 12); cells can be Vertex, Line, "
             "QuadraticEdge, Triangle, QuadraticTriangle, Tetra and QuadraticTetra");
@@ -158,10 +161,11 @@ TEST(MeshFiles, CellsOfOtherKindsAreCountedAndNamed) {
 
 TEST(MeshFiles, RegionsAreReadFromMsmlsMaterials) {
   const test::Folder folder("msml_materials");
-  test::put_bytes(folder / "m.vtk",
-                  "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 "
-                  "0 0 -1\nCELLS 2 10\n4 0 1 2 3\n4 0 2 1 4\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS Materials int 1\n"
-                  "LOOKUP_TABLE default\n4\n9\n");
+  test::put_bytes(
+      folder / "m.vtk",
+      "# vtk DataFile Version 3.0\nt\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 "
+      "0 0 -1\nCELLS 2 10\n4 0 1 2 3\n4 0 2 1 4\nCELL_TYPES 2\n10\n10\nCELL_DATA 2\nSCALARS Materials int 1\n"
+      "LOOKUP_TABLE default\n4\n9\n");
   EXPECT_THAT(std::get<MeshPtr>(test::all().read(folder / "m.vtk", Type::mesh))->regions, ElementsAre(4, 9));
 }
 
@@ -214,7 +218,8 @@ TEST_P(DamagedMeshFile, IsAnErrorOrAValidMeshAndPrintsNothing) {
   }
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_GE(errors, cut * 9 / 10);  // a cut in trailing blanks or in a trailing list of faces may go unnoticed
+  // A cut in trailing blanks goes unnoticed, and an OBJ file, which says no counts, may end behind any face.
+  EXPECT_GE(errors, GetParam() == ".obj" ? cut / 3 : cut * 9 / 10);
 }
 INSTANTIATE_TEST_SUITE_P(All, DamagedMeshFile,
                          testing::Values(".vtk", ".vtu", ".vtp", ".stl", ".off", ".obj", ".ply", ".mesh", ".msh"));
@@ -222,8 +227,10 @@ INSTANTIATE_TEST_SUITE_P(All, DamagedMeshFile,
 TEST(MeshFiles, TheLiverOfMsmlHas297Tets) {
   const std::filesystem::path scenes = MSML_SOURCE_DIR "/../shared/scenes";
   if (!std::filesystem::exists(scenes)) GTEST_SKIP() << "the scenes of MSML are not there: " << scenes;
-  EXPECT_EQ(std::get<MeshPtr>(test::all().read(scenes / "liver/LiverXSTet4.vtk", Type::mesh))->count(CellKind::tet4), 297);
-  EXPECT_EQ(std::get<MeshPtr>(test::all().read(scenes / "liver/LiverXSTet10.vtk", Type::mesh))->count(CellKind::tet10), 297);
+  EXPECT_EQ(std::get<MeshPtr>(test::all().read(scenes / "liver/LiverXSTet4.vtk", Type::mesh))->count(CellKind::tet4),
+            297);
+  EXPECT_EQ(std::get<MeshPtr>(test::all().read(scenes / "liver/LiverXSTet10.vtk", Type::mesh))->count(CellKind::tet10),
+            297);
 }
 
 TEST(MeshFiles, TheBeamOfMsmlMixesTrianglesAndTets) {
