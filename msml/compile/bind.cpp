@@ -23,8 +23,8 @@ void unknown_attribute(Work& work, const Tag& tag, const Attribute& attribute) {
   for (const Slot& slot : tag.description->slots())
     if (slot.role != Role::output) known.push_back(slot.name);
   const std::string hint = did_you_mean(attribute.name, known);
-  const std::string list = hint.empty() && !known.empty() && known.size() <= 12
-                               ? fmt::format("; it has {}", fmt::join(known, ", ")) : "";
+  const std::string list =
+      hint.empty() && !known.empty() && known.size() <= 12 ? fmt::format("; it has {}", fmt::join(known, ", ")) : "";
   work.fault(attribute.where, fmt::format("{} has no attribute {}{}{}", tag.description->tag(),
                                           quoted_value(attribute.name), hint, list));
 }
@@ -37,10 +37,11 @@ std::string step_name(const std::string& text) {
 }
 
 void check_step(Work& work, const std::string& name, const Location& where) {
-  if (name.empty() || work.steps.empty() || std::find(work.steps.begin(), work.steps.end(), name) != work.steps.end())
-    return;
-  work.warn(where, fmt::format("forStep = {} names no step, so this never acts; the steps are {}{}", quoted_value(name),
-                               fmt::join(work.steps, ", "), did_you_mean(name, work.steps)));
+  if (name.empty() || std::find(work.steps.begin(), work.steps.end(), name) != work.steps.end()) return;
+  const std::string steps = work.steps.empty() ? "no step of the scene has a name"
+                                               : fmt::format("the steps are {}", fmt::join(work.steps, ", "));
+  work.warn(where, fmt::format("forStep = {} names no step, so this never acts; {}{}", quoted_value(name), steps,
+                               did_you_mean(name, work.steps)));
 }
 
 void bind_attribute(Work& work, Binding& binding, std::size_t i, const Attribute& attribute) {
@@ -51,7 +52,7 @@ void bind_attribute(Work& work, Binding& binding, std::size_t i, const Attribute
     const std::string name = step_name(attribute.value);
     check_step(work, name, attribute.where);
     binding.sources[i] = Value{name};
-  } else if (binding.description->category() == "var") {
+  } else if (binding.description->category() == "var" && slot.choices.empty()) {
     binding.sources[i] = Value{attribute.value};  // resolved where the variable is used
   } else if (slot.role != Role::target) {
     binding.sources[i] = resolve(work, binding, slot, attribute.value, attribute.where);
@@ -66,24 +67,30 @@ void report_missing(Work& work, const Binding& binding) {
     const auto* value = std::get_if<Value>(&binding.sources[i]);
     const bool absent = value && type(*value) == Type::nothing && !binding.given[i];
     if (slots[i].required && absent)
-      work.fault(binding.where, fmt::format("{} needs the attribute {}: {}", binding.description->tag(), slots[i].name,
-                                            slots[i].doc));
+      work.fault(binding.where,
+                 fmt::format("{} needs the attribute {}: {}", binding.description->tag(), slots[i].name, slots[i].doc));
   }
 }
 
-Binding bind_given(Work& work, const Tag& tag, const std::string& star_attribute = {}, const std::string& star_file = {}) {
+Binding bind_given(Work& work, const Tag& tag, const std::string& star_attribute = {},
+                   const std::string& star_file = {}) {
   Binding binding = bind_defaults(*tag.description, tag.element->where);
   binding.id = label(*tag.element);
   for (const Attribute& attribute : tag.element->attributes) {
     const int slot = tag.description->find(attribute.name);
     if (slot >= 0) {
+      if (attribute.name == star_attribute && star_file.empty()) {
+        binding.given[static_cast<std::size_t>(slot)] = true;
+        continue;
+      }
       Attribute each = attribute;
       if (attribute.name == star_attribute) each.value = star_file;
       bind_attribute(work, binding, static_cast<std::size_t>(slot), each);
     } else if (tag.description->category() == "operator" && attribute.name == "id") {
       continue;
     } else if (is_legacy_attribute(tag.description->tag(), attribute.name)) {
-      work.note(attribute.where, fmt::format("{} of {} has no meaning here", attribute.name, tag.description->tag()));
+      work.note(attribute.where,
+                fmt::format("{} of {} is accepted, but has no meaning", attribute.name, tag.description->tag()));
     } else {
       unknown_attribute(work, tag, attribute);
     }
@@ -97,17 +104,22 @@ void feed_nested(Work& work, Binding& binding, const Tag& tag) {
   const auto& slots = binding.description->slots();
   for (const Tag& inner : tag.children) {
     while (i < slots.size() && (slots[i].role != Role::input || binding.given[i])) ++i;
-    const auto task = std::find_if(work.tasks.begin(), work.tasks.end(), [&](const Task& t) { return t.tag == &inner; });
-    if (task == work.tasks.end()) continue;
-    const Operator& op = *work.node(task->node).op;
-    if (i == slots.size() || op.first_output() < 0) {
-      work.fault(inner.element->where, fmt::format("{} has no unset input left for the nested {}",
-                                                   binding.description->tag(), op.tag()));
+    const int output = static_cast<const Operator*>(inner.description)->first_output();
+    if (i == slots.size() || output < 0) {
+      work.fault(inner.element->where, output < 0 ? fmt::format("{} has no output that could feed {}",
+                                                                inner.description->tag(), owner(binding))
+                                                  : fmt::format("{} has no unset input left for the nested {}",
+                                                                owner(binding), inner.description->tag()));
       return;
     }
+    std::vector<Edge> edges;
+    for (const Task& task : work.tasks)
+      if (task.tag == &inner) edges.push_back({task.node, output});
     binding.given[i] = true;
     binding.places[i] = inner.element->where;
-    binding.sources[i] = connect(work, binding, slots[i], {task->node, op.first_output()}, inner.element->where, op.tag());
+    const std::string reference = edges.empty() ? "" : work.node(edges.front().node).id;
+    if (!edges.empty())
+      binding.sources[i] = connect_all(work, binding, slots[i], edges, inner.element->where, reference);
   }
 }
 
@@ -125,8 +137,8 @@ void detect_each_state(Work& work, Node& node) {
   if (node.each_state >= 0) return;
   for (const Target& target : node.targets)
     if (target.file.string().find('*') != std::string::npos)
-      work.fault(target.where, fmt::format("{} is a pattern, but no input of {} is one or is a series",
-                                           target.file.string(), node.op->tag()));
+      work.fault(target.where, fmt::format("{} is a pattern, but no input of {} is a pattern or a series",
+                                           quoted_value(target.file.string()), owner(node.args)));
 }
 
 }  // namespace
@@ -159,7 +171,7 @@ void bind_tasks(Work& work) {
     report_missing(work, binding);
     Node& node = work.node(task.node);
     node.args = std::move(binding);
-    detect_each_state(work, node);
+    if (task.mapped || task.star_attribute.empty()) detect_each_state(work, node);
   }
 }
 

@@ -13,8 +13,9 @@ void sort_by_place(std::vector<Fault>& faults) {
   std::stable_sort(faults.begin(), faults.end(), [](const Fault& a, const Fault& b) {
     return std::tie(a.where.file, a.where.line) < std::tie(b.where.file, b.where.line);
   });
-  const auto same = [](const Fault& a, const Fault& b) { return a.where == b.where && a.message == b.message; };
-  faults.erase(std::unique(faults.begin(), faults.end(), same), faults.end());
+  // What stands in the environment is bound once per object: each of its faults counts once.
+  std::set<std::pair<int, std::string>> seen;
+  std::erase_if(faults, [&](const Fault& fault) { return !seen.insert({fault.where.line, fault.str()}).second; });
 }
 
 void note_unused(Work& work) {
@@ -23,15 +24,35 @@ void note_unused(Work& work) {
       work.note(named.where, "the variable " + name + " is not used");
 }
 
+/// Tags that only hold others: their attributes have no meaning, but a wrong one is a fault all the same.
+void check_holders(Work& work, const Tag& tag) {
+  const auto& category = tag.description->category();
+  if (category == "operator" || category == "var" || category == "object") return;
+  bind_attributes(work, tag);
+  for (const Tag& inner : tag.children) check_holders(work, inner);
+}
+
 void run_passes(Work& work, const Tag& root) {
   if (const Tag* variables = root.only("variables")) declare_variables(work, *variables);
+  apply_settings(work);
   if (const Tag* workflow = root.only("workflow")) declare_tasks(work, *workflow);
   declare_objects(work, root);
   declare_targets(work);
   bind_tasks(work);
   lower_objects(work, root);
+  check_holders(work, root);
   note_unused(work);
-  if (work.out.faults.empty()) order_nodes(work);
+  order_nodes(work);
+}
+
+/// The faults of the document and, where it has a root, those of the scene.
+Compilation compile_read(const Document& document, std::vector<Fault> faults, const Registry& registry,
+                         const CompileOptions& options) {
+  Compilation out;
+  if (document.root.tag == "msml") out = compile(document, registry, options);
+  out.faults.insert(out.faults.end(), std::make_move_iterator(faults.begin()), std::make_move_iterator(faults.end()));
+  sort_by_place(out.faults);
+  return out;
 }
 
 }  // namespace
@@ -51,16 +72,17 @@ Compilation compile(const Document& document, const Registry& registry, const Co
   return out;
 }
 
+Compilation compile_text(const std::string& text, const std::string& file, const Registry& registry,
+                         const CompileOptions& options) {
+  std::vector<Fault> faults;
+  const Document document = parse_document(text, file, faults);
+  return compile_read(document, std::move(faults), registry, options);
+}
+
 Compilation compile_file(const std::filesystem::path& scene, const Registry& registry, const CompileOptions& options) {
   std::vector<Fault> faults;
   const Document document = read_document(scene, faults);
-  if (!faults.empty()) {
-    Compilation out;
-    out.faults = std::move(faults);
-    sort_by_place(out.faults);
-    return out;
-  }
-  return compile(document, registry, options);
+  return compile_read(document, std::move(faults), registry, options);
 }
 
 }  // namespace msml

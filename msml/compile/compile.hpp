@@ -28,7 +28,13 @@ struct Compilation {
 /// Reads no data file. `registry` must outlive the graph.
 Compilation compile(const Document& document, const Registry& registry, const CompileOptions& options = {});
 
+/// Compiles a scene given as text; `file` is the name used in messages, and its folder the one inputs are looked up in.
+/// Faults of the XML come with those of the scene, unless nothing of the scene could be read.
+Compilation compile_text(const std::string& text, const std::string& file, const Registry& registry,
+                         const CompileOptions& options = {});
+
 /// Reads and compiles a scene file.
-Compilation compile_file(const std::filesystem::path& scene, const Registry& registry, const CompileOptions& options = {});
+Compilation compile_file(const std::filesystem::path& scene, const Registry& registry,
+                         const CompileOptions& options = {});
 
 }  // namespace msml

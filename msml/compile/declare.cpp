@@ -22,20 +22,6 @@ std::string text_of(const Binding& binding, const Key<std::string>& key) {
   return text ? *text : std::string();
 }
 
-void apply_settings(Work& work) {
-  std::vector<std::string> names;
-  for (const auto& [name, named] : work.scope) names.push_back(name);
-  for (const auto& [name, value] : work.options.set) {
-    const auto found = work.scope.find(name);
-    if (found == work.scope.end())
-      work.fault({work.document.file, 0},
-                 fmt::format("--set {}={}: the scene has no variable {}{}", name, quoted_value(value), name,
-                             did_you_mean(name, names)));
-    else
-      found->second.variable.value = value;
-  }
-}
-
 void declare_task(Work& work, const Tag& tag) {
   for (const Tag& inner : tag.children) declare_task(work, inner);
   const Attribute* id = tag.element->find("id");
@@ -78,7 +64,9 @@ void split_task(Work& work, Task task, const std::string& attribute, const std::
   const Location& where = task.tag->element->find(attribute)->where;
   const auto files = matching_files(work, pattern);
   if (files.empty()) {
-    work.fault(where, fmt::format("{} = {} matches no file beside the scene and no task's target", attribute, pattern));
+    work.fault(where, fmt::format("{} = {} matches no file beside the scene and no task's target", attribute,
+                                  quoted_value(pattern)));
+    task.star_attribute = attribute;  // reported here, so no more of it is said when the task is bound
     split.push_back(std::move(task));
     return;
   }
@@ -109,13 +97,13 @@ std::string with_star(std::string text, const std::string& star) {
 
 bool writable(Work& work, Type type, const std::string& file, const Location& where, const std::string& attribute) {
   const bool verbatim = type == Type::file || !is_data(type);
-  const Format* format = work.registry.format(file);
   if (verbatim) return true;
   const auto endings = work.registry.extensions_for(type, true);
-  if (format && std::find(endings.begin(), endings.end(), work.registry.extension(file)) != endings.end()) return true;
+  if (std::find(endings.begin(), endings.end(), work.registry.extension(file)) != endings.end()) return true;
   std::string list;
   for (const std::string& ending : endings) list += " " + ending;
-  work.fault(where, fmt::format("{} = {}: files that hold a {} end in{}", attribute, quoted_value(file), name(type), list));
+  work.fault(where, fmt::format("{} = {}: files that hold {} end in{}", attribute, quoted_value(file),
+                                with_article(type), list));
   return false;
 }
 
@@ -125,7 +113,15 @@ void enter_target(Work& work, const Task& task, const Slot& slot, const Attribut
   const std::string file = task.mapped ? with_star(trimmed(*text), task.star) : trimmed(*text);
   Node& node = work.node(task.node);
   if (!writable(work, node.output_type(slot.written_output), file, attribute.where, attribute.name)) return;
-  const auto [found, fresh] = work.written.insert({file, {{task.node, slot.written_output}, attribute.where}});
+  const auto [found, fresh] =
+      work.written.insert({same_file(file), {{task.node, slot.written_output}, attribute.where}});
+  if (!fresh && task.mapped && found->second.where == attribute.where) {
+    work.fault(attribute.where,
+               fmt::format("{} = {} is one file, but the task runs once per file that matches {}; put a * "
+                           "into it",
+                           attribute.name, quoted_value(file), task.star_attribute));
+    return;
+  }
   if (!fresh) {
     work.fault(attribute.where, fmt::format("{} = {} is also written at line {}", attribute.name, quoted_value(file),
                                             found->second.where.line));
@@ -150,7 +146,8 @@ bool declare(Work& work, const std::string& name, Named named) {
   const auto [found, fresh] = work.scope.insert({name, named});
   if (!fresh)
     work.fault(named.where, fmt::format("the name {} is taken: it is declared at line {}; variables, tasks and outputs "
-                                        "share one scope", quoted_value(name), found->second.where.line));
+                                        "share one scope",
+                                        quoted_value(name), found->second.where.line));
   return fresh;
 }
 
@@ -163,11 +160,24 @@ void declare_variables(Work& work, const Tag& variables) {
     named.variable = {text_of(binding, keys.value), text_of(binding, keys.logical), tag.element->where, false};
     const std::string name = text_of(binding, keys.name);
     if (!name.empty() && !usable_name(name))
-      work.fault(tag.element->where, fmt::format("name = '{}' is not a name: no blanks, dots, braces or $",
-                                                 quoted_value(name)));
-    else declare(work, name, named);
+      work.fault(tag.element->where,
+                 fmt::format("name = '{}' is not a name: no blanks, dots, braces or $", quoted_value(name)));
+    else
+      declare(work, name, named);
   }
-  apply_settings(work);
+}
+
+void apply_settings(Work& work) {
+  std::vector<std::string> names;
+  for (const auto& [name, named] : work.scope) names.push_back(name);
+  for (const auto& [name, value] : work.options.set) {
+    const auto found = work.scope.find(name);
+    if (found == work.scope.end())
+      work.fault({work.document.file, 0}, fmt::format("--set {}={}: the scene has no variable {}{}", name,
+                                                      quoted_value(value), name, did_you_mean(name, names)));
+    else
+      found->second.variable.value = value;
+  }
 }
 
 void declare_tasks(Work& work, const Tag& workflow) {

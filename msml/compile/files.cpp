@@ -40,7 +40,7 @@ std::string reading_problem(const Work& work, const std::string& file, const fs:
   if (type == Type::file) return {};
   const auto endings = work.registry.extensions_for(type, false);
   if (std::find(endings.begin(), endings.end(), work.registry.extension(path)) != endings.end()) return {};
-  return fmt::format("cannot be read as a {}: such files end in {}", name(type), fmt::join(endings, " "));
+  return fmt::format("cannot be read as {}: such files end in {}", with_article(type), fmt::join(endings, " "));
 }
 
 Edge file_edge(Work& work, const fs::path& path, Type type, const std::string& logical, const Location& where) {
@@ -61,7 +61,7 @@ Edge file_edge(Work& work, const fs::path& path, Type type, const std::string& l
 
 Source resolve_one(Work& work, const Binding& user, const Slot& slot, const std::string& file,
                    const std::string& logical, const Location& where) {
-  if (const auto found = work.written.find(file); found != work.written.end())
+  if (const auto found = work.written.find(same_file(file)); found != work.written.end())
     return connect(work, user, slot, found->second.edge, where, file);
   const fs::path path = beside_scene(work, file);
   const Type type = slot.type == Type::images ? Type::image : slot.type;
@@ -78,7 +78,7 @@ Source resolve_one(Work& work, const Binding& user, const Slot& slot, const std:
 std::vector<std::string> matching_files(Work& work, const std::string& pattern) {
   std::set<std::string> found;
   for (const auto& [file, written] : work.written)
-    if (matches(pattern, file)) found.insert(file);
+    if (matches(same_file(pattern), file)) found.insert(file);
   const fs::path path = beside_scene(work, pattern);
   const fs::path folder = fs::path(pattern).parent_path();
   for (const std::string& name : names_in(path.parent_path()))
@@ -99,11 +99,14 @@ Source resolve_file(Work& work, const Binding& user, const Slot& slot, const std
   std::vector<Edge> edges;
   for (const std::string& each : matching_files(work, file)) {
     const Source source = resolve_one(work, user, slot, each, logical, where);
-    if (const auto* edge = std::get_if<Edge>(&source)) edges.push_back(*edge);
-    else return Value{};
+    if (const auto* edge = std::get_if<Edge>(&source))
+      edges.push_back(*edge);
+    else
+      return Value{};
   }
   if (edges.empty())
-    work.fault(where, fmt::format("{} = {} matches no file beside the scene and no task's target", slot.name, file));
+    work.fault(where, fmt::format("{} = {} matches no file beside the scene and no task's target", slot.name,
+                                  quoted_value(file)));
   return edges;
 }
 

@@ -20,9 +20,9 @@ Description holder(const std::string& tag, const std::string& doc, std::vector<C
 }
 
 void add_top(Registry& registry) {
-  add(registry, holder("msml", "A scene: what is given, what it is made of, how it is computed.",
-                       {{"variables", 0, 1}, {"scene", 0, 1}, {"workflow", 0, 1}, {"environment", 0, 1},
-                        {"studies", 0, 1}}));
+  add(registry,
+      holder("msml", "A scene: what is given, what it is made of, how it is computed.",
+             {{"variables", 0, 1}, {"scene", 0, 1}, {"workflow", 0, 1}, {"environment", 0, 1}, {"studies", 0, 1}}));
   add(registry, holder("variables", "Names for values, used as ${name}.", {{"var"}}));
   VariableKeys keys;
   add(registry, describe_variable(keys));
@@ -45,9 +45,9 @@ void add_sets(Registry& registry) {
 }
 
 void add_object(Registry& registry) {
-  Description object = holder("object", "A body: mesh, material, constraints and what is wanted of it.",
-                              {{"meshes", 1, 1}, {"sets", 0, 1}, {"materials", 1, 1}, {"constraints", 0, 1},
-                               {"outputs", 0, 1}});
+  Description object =
+      holder("object", "A body: mesh, material, constraints and what is wanted of it.",
+             {{"meshes", 1, 1}, {"sets", 0, 1}, {"materials", 1, 1}, {"constraints", 0, 1}, {"outputs", 0, 1}});
   object.parameter<std::string>("id", {.optional = true, .doc = "label of the body"});
   add(registry, std::move(object));
   Description mesh("mesh", "meshes", "The mesh of the body.");
@@ -66,7 +66,8 @@ void add_object(Registry& registry) {
   add(registry, holder("constraints", "What holds and what loads the body.", {{"constraint-group"}}));
   Description constraint("constraint", "constraint-group", "Constraints and loads that act together.");
   constraint.parameter<std::string>("name", {.optional = true, .doc = "label"});
-  constraint.parameter<std::string>("forStep", {.optional = true, .doc = "step in which it acts; absent: in every step"});
+  constraint.parameter<std::string>("forStep",
+                                    {.optional = true, .doc = "step in which it acts; absent: in every step"});
   constraint.allow({"constraint"});
   add(registry, std::move(constraint));
   Description output("output", "outputs", "What is wanted of the simulation.");
@@ -85,7 +86,8 @@ Description describe_variable(VariableKeys& keys) {
   Description var("var", "var", "A named value.");
   keys.name = var.parameter<std::string>("name", {.doc = "the name, used as ${name}"});
   keys.value = var.parameter<std::string>("value", {.doc = "a literal of the type of the attribute it is used in"});
-  keys.logical = var.parameter<std::string>("logical", {.optional = true, .doc = "the meaning, a hint: Mesh, NodeSet, …"});
+  keys.logical =
+      var.parameter<std::string>("logical", {.optional = true, .doc = "the meaning, a hint: Mesh, NodeSet, …"});
   keys.physical = var.parameter<std::string>("physical", {.optional = true, .doc = "the carrier, a hint: file.vtk, …"});
   keys.role = var.parameter<std::string>("role", {.optional = true,
                                                   .choices = {"input", "output", "param", "fix"},

@@ -57,13 +57,15 @@ void edges_to_dot(const Graph& graph, const Binding& binding, std::size_t user, 
 }  // namespace
 
 std::string to_dot(const Graph& graph, const std::vector<bool>& runs) {
-  std::string out = "digraph scene {\n  rankdir=LR;\n  node [fontname=\"Helvetica\" fontsize=11 shape=box];\n"
-                    "  edge [fontname=\"Helvetica\" fontsize=9 color=gray40];\n";
+  std::string out =
+      "digraph scene {\n  rankdir=LR;\n  node [fontname=\"Helvetica\" fontsize=11 shape=box];\n"
+      "  edge [fontname=\"Helvetica\" fontsize=9 color=gray40];\n";
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     const Node& node = graph.nodes[i];
     const char* shape = node.kind == NodeKind::file ? "note" : node.kind == NodeKind::simulation ? "box3d" : "box";
     std::string style = runs[i] ? "" : " style=dashed color=gray60 fontcolor=gray60";
-    out += fmt::format("  n{} [label=\"{}\\n{}\" shape={}{}];\n", i, escaped(node.tag()), escaped(node.id), shape, style);
+    out +=
+        fmt::format("  n{} [label=\"{}\\n{}\" shape={}{}];\n", i, escaped(node.tag()), escaped(node.id), shape, style);
     for (const Target& target : node.targets) {
       const std::string file = escaped(target.file.string());
       out += fmt::format("  \"file {0}\" [label=\"{0}\" shape=note style=filled fillcolor=lightyellow];\n", file);

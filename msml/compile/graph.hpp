@@ -26,16 +26,16 @@ struct Binding {
   const Description* description = nullptr;
   Location where;
   std::string id;
-  std::vector<Source> sources;     ///< one per slot
-  std::vector<Location> places;    ///< one per slot: of the attribute, or of the tag
-  std::vector<bool> given;         ///< one per slot
+  std::vector<Source> sources;   ///< one per slot
+  std::vector<Location> places;  ///< one per slot: of the attribute, or of the tag
+  std::vector<bool> given;       ///< one per slot
   std::vector<Binding> children;
 };
 
 /// A file that an output is written to after the node has run.
 struct Target {
-  int output = -1;                 ///< slot of the output
-  std::filesystem::path file;      ///< relative to the output folder, or absolute
+  int output = -1;             ///< slot of the output
+  std::filesystem::path file;  ///< relative to the output folder, or absolute
   Location where;
 };
 
@@ -45,8 +45,8 @@ struct Node {
   NodeKind kind = NodeKind::task;
   std::string id;
   Location where;
-  const Operator* op = nullptr;    ///< null for a file
-  Binding args;                    ///< of the operator
+  const Operator* op = nullptr;  ///< null for a file
+  Binding args;                  ///< of the operator
   std::vector<Target> targets;
   std::vector<std::string> results;  ///< simulation: ids of its outputs, in the order of their slots
   std::vector<Type> result_types;
@@ -61,10 +61,10 @@ struct Node {
 };
 
 struct Graph {
-  std::string scene;               ///< file name as given
+  std::string scene;  ///< file name as given
   std::filesystem::path folder;
   std::vector<Node> nodes;
-  std::vector<int> order;          ///< every node after all it needs; ties by place in the scene
+  std::vector<int> order;  ///< every node after all it needs; ties by place in the scene
 };
 
 /// The nodes that a binding reads from, added to `nodes`.

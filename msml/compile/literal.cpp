@@ -31,13 +31,7 @@ std::vector<std::string> list_parts(const std::string& text) {
   return parts;
 }
 
-std::string quoted_value(const std::string& text) {
-  constexpr std::size_t most = 60;
-  if (text.size() <= most) return text;
-  std::size_t end = most;
-  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-  return text.substr(0, end) + "…";
-}
+std::string quoted_value(const std::string& text) { return shortened(text); }
 
 namespace {
 
@@ -102,7 +96,8 @@ Parsed parse_list(const Slot& slot, const std::string& text, Check check) {
     T value{};
     const std::errc code = read(part, value);
     if (const std::string what = check(slot, code, value); !what.empty())
-      return {{}, fmt::format("{}: entry {} of the list = {} {}", slot.name, list.size() + 1, quoted_value(part), what)};
+      return {{},
+              fmt::format("{}: entry {} of the list = {} {}", slot.name, list.size() + 1, quoted_value(part), what)};
     list.push_back(value);
   }
   if (const std::string what = length_problem(slot, list.size()); !what.empty()) return {{}, what};
@@ -124,25 +119,50 @@ Parsed parse_indices(const Slot& slot, const std::string& text, Indexed indexes)
 
 }  // namespace
 
+std::string value_problem(const Slot& slot, const Value& value) {
+  const auto of_list = [&](const auto& list) {
+    for (std::size_t i = 0; i < list.size(); ++i)
+      if (!slot.range.contains(static_cast<double>(list[i])))
+        return fmt::format("{}: entry {} of the list = {} is not {}", slot.name, i + 1, list[i], slot.range.str());
+    return length_problem(slot, list.size());
+  };
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) return of_list(*list);
+  if (const auto* list = std::get_if<std::vector<Integer>>(&value)) return of_list(*list);
+  if (const auto* text = std::get_if<std::string>(&value)) return parse_text(slot, *text).problem;
+  const auto* whole = std::get_if<Integer>(&value);
+  const auto* number = std::get_if<double>(&value);
+  if (!whole && !number) return {};
+  if (slot.range.contains(number ? *number : static_cast<double>(*whole))) return {};
+  return fmt::format("{} = {} is not {}", slot.name, summary(value), slot.range.str());
+}
+
 Parsed parse_literal(const Slot& slot, const std::string& raw, Indexed indexes) {
   const std::string text = trimmed(raw);
   switch (slot.type) {
-    case Type::boolean: return parse_boolean(slot, text);
-    case Type::text: return parse_text(slot, text);
-    case Type::integers: return parse_list<Integer>(slot, text, integer_problem);
-    case Type::numbers: return parse_list<double>(slot, text, number_problem);
-    case Type::index_set: return parse_indices(slot, text, indexes);
+    case Type::boolean:
+      return parse_boolean(slot, text);
+    case Type::text:
+      return parse_text(slot, text);
+    case Type::integers:
+      return parse_list<Integer>(slot, text, integer_problem);
+    case Type::numbers:
+      return parse_list<double>(slot, text, number_problem);
+    case Type::index_set:
+      return parse_indices(slot, text, indexes);
     case Type::integer: {
       Integer value = 0;
-      const std::string what = integer_problem(slot, read(text, value), value);
+      const std::errc code = read(text, value);  // before its value is used: arguments have no order
+      const std::string what = integer_problem(slot, code, value);
       return what.empty() ? Parsed{value, {}} : problem(slot, text, what);
     }
     case Type::number: {
       double value = 0;
-      const std::string what = number_problem(slot, read(text, value), value);
+      const std::errc code = read(text, value);
+      const std::string what = number_problem(slot, code, value);
       return what.empty() ? Parsed{value, {}} : problem(slot, text, what);
     }
-    default: return problem(slot, text, fmt::format("cannot be a {} written in place", name(slot.type)));
+    default:
+      return problem(slot, text, fmt::format("cannot be {} written in place", with_article(slot.type)));
   }
 }
 

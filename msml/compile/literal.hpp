@@ -22,6 +22,9 @@ struct Parsed {
 };
 Parsed parse_literal(const Slot& slot, const std::string& text, Indexed indexes);
 
+/// What is wrong with a value that came along an edge, by the slot's range, choices and lengths; "" if nothing is.
+std::string value_problem(const Slot& slot, const Value& value);
+
 /// Shortened for a message: at most 60 characters.
 std::string quoted_value(const std::string& text);
 

@@ -39,11 +39,14 @@ void declare_outputs(Work& work, const Tag& object, int node) {
     const int slot = static_cast<int>(simulation.results.size());
     simulation.results.push_back(name);
     simulation.result_types.push_back(request.description->produces());
-    if (name.find_first_of("/${}. \\*") != std::string::npos)
-      work.fault(id->where, fmt::format("id = '{}' names files, so it holds no blanks, dots, slashes, braces or *",
+    if (id && name.empty())
+      work.fault(id->where, fmt::format("the id of {} is empty, but names its files", request.description->tag()));
+    else if (name.find_first_of("/${}. \\*\"'<>|") != std::string::npos)
+      work.fault(id->where, fmt::format("id = '{}' names files: no blanks, dots, slashes, quotes, braces or *",
                                         quoted_value(name)));
     else
-      declare(work, name, {.kind = Named::Kind::output, .where = request.element->where, .nodes = {node}, .slot = slot});
+      declare(work, name,
+              {.kind = Named::Kind::output, .where = request.element->where, .nodes = {node}, .slot = slot});
   }
 }
 
@@ -76,6 +79,7 @@ void lower(Work& work, const Tag& object, const Tag& root, int node) {
 void declare_objects(Work& work, const Tag& root) {
   declare_steps(work, root);
   const Operator* op = work.registry.find_operator(simulate_tag);
+  std::map<std::string, Location> labels;
   for (const Tag* object : objects(root)) {
     if (!op) {
       work.fault(object->element->where, "this build has no simulation");
@@ -87,6 +91,9 @@ void declare_objects(Work& work, const Tag& root) {
     node.where = object->element->where;
     node.op = op;
     node.id = id ? trimmed(id->value) : fmt::format("object_line{}", node.where.line);
+    if (const auto [first, fresh] = labels.insert({node.id, node.where}); !fresh)
+      work.fault(node.where, fmt::format("two objects are called {}: the other one is at line {}",
+                                         quoted_value(node.id), first->second.line));
     work.out.graph.nodes.push_back(std::move(node));
     declare_outputs(work, *object, static_cast<int>(work.out.graph.nodes.size()) - 1);
   }

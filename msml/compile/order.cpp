@@ -10,28 +10,31 @@
 namespace msml {
 namespace {
 
-/// Depth-first search for a cycle; `path` holds the nodes on the way.
-bool find_cycle(const Graph& graph, int node, std::vector<int>& mark, std::vector<int>& path) {
-  mark[static_cast<std::size_t>(node)] = 1;
-  path.push_back(node);
-  for (const int need : graph.nodes[static_cast<std::size_t>(node)].needs) {
-    if (mark[static_cast<std::size_t>(need)] == 1) {
-      path.push_back(need);
-      return true;
-    }
-    if (mark[static_cast<std::size_t>(need)] == 0 && find_cycle(graph, need, mark, path)) return true;
+/// A cycle among the nodes that no order could place, the first in the scene first. Each of them needs another of them,
+/// so walking from need to need comes back to a node met before.
+std::vector<int> find_cycle(const Graph& graph, const std::vector<int>& order) {
+  std::vector<bool> left(graph.nodes.size(), true);
+  for (const int node : order) left[static_cast<std::size_t>(node)] = false;
+  std::vector<int> path{static_cast<int>(std::find(left.begin(), left.end(), true) - left.begin())};
+  std::vector<bool> met(graph.nodes.size(), false);
+  while (!met[static_cast<std::size_t>(path.back())]) {
+    met[static_cast<std::size_t>(path.back())] = true;
+    const auto& needs = graph.nodes[static_cast<std::size_t>(path.back())].needs;
+    path.push_back(*std::find_if(needs.begin(), needs.end(), [&](int i) { return left[static_cast<std::size_t>(i)]; }));
   }
+  path.erase(path.begin(), std::find(path.begin(), path.end() - 1, path.back()));
   path.pop_back();
-  mark[static_cast<std::size_t>(node)] = 2;
-  return false;
+  std::rotate(path.begin(), std::min_element(path.begin(), path.end()), path.end());
+  return path;
 }
 
-void report_cycle(Work& work, const std::vector<int>& path) {
-  const auto start = std::find(path.begin(), path.end() - 1, path.back());
+void report_cycle(Work& work, const std::vector<int>& cycle) {
+  constexpr std::size_t shown = 12;
+  const auto named = [&](int i) { return fmt::format("{} (line {})", work.node(i).id, work.node(i).where.line); };
   std::string text;
-  for (auto i = start; i != path.end(); ++i)
-    text += fmt::format("{}{} (line {})", text.empty() ? "" : " needs ", work.node(*i).id, work.node(*i).where.line);
-  work.fault(work.node(path.back()).where, "a cycle: " + text);
+  for (std::size_t i = 0; i < std::min(shown, cycle.size()); ++i) text += named(cycle[i]) + " needs ";
+  if (cycle.size() > shown) text += fmt::format("… {} more … needs ", cycle.size() - shown);
+  work.fault(work.node(cycle.front()).where, "tasks that need each other in a circle: " + text + named(cycle.front()));
 }
 
 std::vector<int> sorted_order(const Graph& graph) {
@@ -55,18 +58,33 @@ std::vector<int> sorted_order(const Graph& graph) {
   return order;
 }
 
+/// Files that the tag hands on without reading them.
+std::vector<std::filesystem::path> files_as_they_are(const Binding& binding) {
+  std::vector<std::filesystem::path> files;
+  for (const Source& source : binding.sources)
+    if (const auto* value = std::get_if<Value>(&source))
+      if (const auto* file = std::get_if<File>(value)) files.push_back(file->path);
+  return files;
+}
+
 void refuse_overwriting(Work& work) {
   namespace fs = std::filesystem;
   std::error_code code;
+  std::set<fs::path> inputs;
+  for (const Node& node : work.out.graph.nodes) {
+    if (node.kind == NodeKind::file) inputs.insert(fs::weakly_canonical(node.file, code));
+    for (const fs::path& file : files_as_they_are(node.args)) inputs.insert(fs::weakly_canonical(file, code));
+  }
+  const fs::path scene = fs::weakly_canonical(work.document.file, code);
   for (const Node& node : work.out.graph.nodes)
     for (const Target& target : node.targets) {
       const fs::path path = fs::weakly_canonical(work.options.output_folder / target.file, code);
-      for (const Node& input : work.out.graph.nodes)
-        if (input.kind == NodeKind::file && fs::weakly_canonical(input.file, code) == path)
-          work.fault(target.where, fmt::format("{} would overwrite the input of the same name; choose another output "
-                                               "folder with -o", target.file.string()));
-      if (path == fs::weakly_canonical(work.document.file, code))
-        work.fault(target.where, fmt::format("{} would overwrite the scene itself", target.file.string()));
+      if (inputs.contains(path))
+        work.fault(target.where, fmt::format("{} would overwrite the input of the same name; choose another output "
+                                             "folder with -o",
+                                             shortened(target.file.string())));
+      if (path == scene)
+        work.fault(target.where, fmt::format("{} would overwrite the scene itself", shortened(target.file.string())));
     }
 }
 
@@ -79,15 +97,8 @@ void order_nodes(Work& work) {
     std::sort(node.needs.begin(), node.needs.end());
     node.needs.erase(std::unique(node.needs.begin(), node.needs.end()), node.needs.end());
   }
-  std::vector<int> mark(graph.nodes.size(), 0);
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    std::vector<int> path;
-    if (mark[i] == 0 && find_cycle(graph, static_cast<int>(i), mark, path)) {
-      report_cycle(work, path);
-      return;
-    }
-  }
   graph.order = sorted_order(graph);
+  if (graph.order.size() < graph.nodes.size()) report_cycle(work, find_cycle(graph, graph.order));
   refuse_overwriting(work);
 }
 

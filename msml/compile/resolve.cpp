@@ -10,7 +10,9 @@
 namespace msml {
 namespace {
 
-constexpr int deepest = 32;  // variables that refer to variables
+constexpr int deepest = 32;                // variables that refer to variables
+constexpr std::size_t longest = 1u << 20;  // of a text after all variables are filled in
+constexpr int most_pieces = 10'000;        // of such a text
 
 std::vector<std::string> scope_names(const Work& work) {
   std::vector<std::string> names;
@@ -18,13 +20,10 @@ std::vector<std::string> scope_names(const Work& work) {
   return names;
 }
 
-std::string owner(const Binding& user) {
-  return user.id.empty() ? user.description->tag() : fmt::format("{} '{}'", user.description->tag(), user.id);
-}
-
 void unknown_name(Work& work, const std::string& name, const Location& where) {
+  constexpr std::size_t hinted = 100;  // a scene of faults need not be compared with itself
   work.fault(where, fmt::format("${{{}}} names no variable, task or output{}", quoted_value(name),
-                                did_you_mean(name, scope_names(work))));
+                                work.out.faults.size() < hinted ? did_you_mean(name, scope_names(work)) : ""));
 }
 
 /// "task.slot" -> the name and the slot; a plain name has no slot.
@@ -49,23 +48,11 @@ int output_slot(Work& work, const Node& node, const std::string& slot, const std
   } else {
     std::string list;
     for (const std::string& each : outputs) list += (list.empty() ? "" : ", ") + each;
-    work.fault(where, fmt::format("${{{}}}: {} at line {} has no output {}{}; it has {}", quoted_value(reference),
-                                  node.op->tag(), node.where.line, quoted_value(slot), did_you_mean(slot, outputs), list));
+    work.fault(where,
+               fmt::format("${{{}}}: {} at line {} has no output {}{}; it has {}", quoted_value(reference),
+                           node.op->tag(), node.where.line, quoted_value(slot), did_you_mean(slot, outputs), list));
   }
   return -1;
-}
-
-/// Several edges, where a task runs once per file: only an input that takes a list accepts them.
-Source connect_all(Work& work, const Binding& user, const Slot& slot, const std::vector<Edge>& edges,
-                   const Location& where, const std::string& reference) {
-  if (slot.type != Type::images) {
-    work.fault(where, fmt::format("{} of {} takes one {}, but ${{{}}} runs once per file and gives {}", slot.name,
-                                  owner(user), name(slot.type), reference, edges.size()));
-    return Value{};
-  }
-  for (const Edge& edge : edges)
-    if (std::holds_alternative<Value>(connect(work, user, slot, edge, where, reference))) return Value{};
-  return edges;
 }
 
 Source resolve_reference(Work& work, const Binding& user, const Slot& slot, const std::string& reference,
@@ -77,8 +64,14 @@ Source resolve_reference(Work& work, const Binding& user, const Slot& slot, cons
     return Value{};
   }
   const Named& named = found->second;
+  if (named.kind == Named::Kind::variable) {
+    work.fault(where, fmt::format("${{{}}}: {} is the variable at line {}, which has no outputs",
+                                  quoted_value(reference), name, named.where.line));
+    return Value{};
+  }
   if (named.kind == Named::Kind::output) {
-    if (!part.empty()) work.fault(where, fmt::format("${{{}}}: the output {} has no parts", reference, name));
+    if (!part.empty())
+      work.fault(where, fmt::format("${{{}}}: the output {} has no parts", quoted_value(reference), name));
     return connect(work, user, slot, {named.nodes.front(), named.slot}, where, reference);
   }
   if (named.nodes.empty()) return Value{};
@@ -86,7 +79,6 @@ Source resolve_reference(Work& work, const Binding& user, const Slot& slot, cons
   if (output < 0) return Value{};
   std::vector<Edge> edges;
   for (const int node : named.nodes) edges.push_back({node, output});
-  if (edges.size() == 1) return connect(work, user, slot, edges.front(), where, reference);
   return connect_all(work, user, slot, edges, where, reference);
 }
 
@@ -108,13 +100,15 @@ void refuse_joined_task(Work& work, const std::vector<Piece>& parts, const Slot&
   for (const Piece& piece : parts) {
     if (!piece.reference) continue;
     const auto found = work.scope.find(split_reference(piece.text).first);
-    if (found == work.scope.end()) unknown_name(work, piece.text, where);
+    if (found == work.scope.end())
+      unknown_name(work, piece.text, where);
     else if (found->second.kind != Named::Kind::variable)
       work.fault(where, fmt::format("{}: ${{{}}} is the result of a task and cannot be joined with text", slot.name,
                                     piece.text));
-    else
-      work.fault(where, fmt::format("{}: the variable {} does not stand for text here; variables that refer to each "
-                                    "other in a circle have no value", slot.name, piece.text));
+    else if (!plain_text(work, "${" + piece.text + "}"))
+      work.fault(where, fmt::format("{}: the variable {} (line {}) does not stand for text: it leads to a task, to no "
+                                    "name, back to itself, or grows without bound",
+                                    slot.name, piece.text, found->second.where.line));
   }
 }
 
@@ -135,6 +129,25 @@ std::string conversion_hint(const Work& work, Type from, Type to) {
   return hint.empty() ? "" : "; between them: " + hint;
 }
 
+/// Adds the text with its variables filled in to `joined`; false where it has none, or where it would grow too long.
+bool append_plain(Work& work, const std::string& text, int depth, int& pieces_left, std::string& joined) {
+  std::string problem;
+  const auto parts = pieces(text, problem);
+  if (!problem.empty() || depth > deepest) return false;
+  for (const Piece& piece : parts) {
+    if (--pieces_left < 0 || (depth > 0 && joined.size() + piece.text.size() > longest)) return false;
+    if (!piece.reference) {
+      joined += piece.text;
+      continue;
+    }
+    const auto found = work.scope.find(piece.text);
+    if (found == work.scope.end() || found->second.kind != Named::Kind::variable) return false;
+    found->second.variable.used = true;
+    if (!append_plain(work, found->second.variable.value, depth + 1, pieces_left, joined)) return false;
+  }
+  return true;
+}
+
 bool has_file(const Node& node, int slot) {
   if (node.kind == NodeKind::file || node.output_type(slot) == Type::series) return true;
   return std::any_of(node.targets.begin(), node.targets.end(), [slot](const Target& t) { return t.output == slot; });
@@ -142,23 +155,29 @@ bool has_file(const Node& node, int slot) {
 
 }  // namespace
 
-std::optional<std::string> plain_text(Work& work, const std::string& text, int depth) {
-  if (depth > deepest) return std::nullopt;
-  std::string problem, joined;
-  for (const Piece& piece : pieces(text, problem)) {
-    if (!piece.reference) {
-      joined += piece.text;
-      continue;
-    }
-    const auto found = work.scope.find(piece.text);
-    if (found == work.scope.end() || found->second.kind != Named::Kind::variable) return std::nullopt;
-    found->second.variable.used = true;
-    const auto inner = plain_text(work, found->second.variable.value, depth + 1);
-    if (!inner) return std::nullopt;
-    joined += *inner;
-  }
-  if (!problem.empty()) return std::nullopt;
+std::string owner(const Binding& user) {
+  return user.id.empty() ? user.description->tag()
+                         : fmt::format("{} '{}'", user.description->tag(), quoted_value(user.id));
+}
+
+std::optional<std::string> plain_text(Work& work, const std::string& text) {
+  int pieces_left = most_pieces;
+  std::string joined;
+  if (!append_plain(work, text, 0, pieces_left, joined)) return std::nullopt;
   return joined;
+}
+
+Source connect_all(Work& work, const Binding& user, const Slot& slot, const std::vector<Edge>& edges,
+                   const Location& where, const std::string& reference) {
+  if (edges.size() == 1) return connect(work, user, slot, edges.front(), where, reference);
+  if (slot.type != Type::images) {
+    work.fault(where, fmt::format("{} of {} takes one {}, but ${{{}}} runs once per file and gives {}", slot.name,
+                                  owner(user), name(slot.type), reference, edges.size()));
+    return Value{};
+  }
+  for (const Edge& edge : edges)
+    if (std::holds_alternative<Value>(connect(work, user, slot, edge, where, reference))) return Value{};
+  return edges;
 }
 
 Source connect(Work& work, const Binding& user, const Slot& slot, Edge edge, const Location& where,
@@ -173,13 +192,15 @@ Source connect(Work& work, const Binding& user, const Slot& slot, Edge edge, con
   if (slot.type == Type::file) {
     if (from == Type::file || has_file(node, edge.slot)) return edge;
     work.fault(where, fmt::format("{} of {} needs a file, but ${{{}}} of {} at line {} is not written to one: name a "
-                                  "target there", slot.name, owner(user), reference, node.tag(), node.where.line));
+                                  "target there",
+                                  slot.name, owner(user), reference, node.tag(), node.where.line));
     return Value{};
   }
   if (from != Type::file && converts(from, slot.type)) return edge;
-  work.fault(where, fmt::format("{} of {} needs a {}, but ${{{}}} is the {} '{}' of {} at line {}{}", slot.name,
-                                owner(user), name(slot.type), reference, name(from), node.output_name(edge.slot),
-                                node.tag(), node.where.line, conversion_hint(work, from, slot.type)));
+  work.fault(where,
+             fmt::format("{} of {} needs {}, but ${{{}}} is the {} '{}' of {} at line {}{}", slot.name, owner(user),
+                         with_article(slot.type), reference, name(from), node.output_name(edge.slot), node.tag(),
+                         node.where.line, conversion_hint(work, from, slot.type)));
   return Value{};
 }
 
@@ -209,7 +230,8 @@ Source resolve(Work& work, const Binding& user, const Slot& slot, const std::str
     from = found->second.variable.where;
     current = found->second.variable.value;
   }
-  work.fault(where, fmt::format("{} = {}: the variables refer to each other in a circle", slot.name, quoted_value(text)));
+  work.fault(where, fmt::format("{} = {}: the variables refer to each other in a circle", slot.name,
+                                quoted_value(trimmed(text))));
   return Value{};
 }
 

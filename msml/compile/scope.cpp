@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <filesystem>
 
 #include "msml/compile/literal.hpp"
 
@@ -37,17 +38,29 @@ Indexed indexed_by(const std::string& logical, Indexed fallback) {
 }
 
 bool matches(const std::string& pattern, const std::string& name, std::string* star) {
-  const std::size_t at = pattern.find('*');
-  if (at == std::string::npos) return pattern == name;
-  if (name.compare(0, at, pattern, 0, at) != 0) return false;
-  const std::string rest = pattern.substr(at + 1);
-  for (std::size_t i = at; i <= name.size(); ++i)
-    if (matches(rest, name.substr(i))) {
-      if (star) *star = name.substr(at, i - at);
-      return true;
-    }
-  return false;
+  const std::size_t first = pattern.find('*');
+  if (first == std::string::npos) return pattern == name;
+  const std::size_t last = pattern.rfind('*'), tail = pattern.size() - last - 1;
+  if (name.size() < first + tail || name.compare(0, first, pattern, 0, first) != 0 ||
+      name.compare(name.size() - tail, tail, pattern, last + 1, tail) != 0)
+    return false;
+  // Each part between two stars is taken at its first place: no later place could let more of the rest match.
+  const std::size_t end = name.size() - tail;
+  std::size_t from = first, star_end = end;
+  for (std::size_t at = first; at != last;) {
+    const std::size_t next = pattern.find('*', at + 1);
+    const std::string part = pattern.substr(at + 1, next - at - 1);
+    const std::size_t found = name.find(part, from);
+    if (found == std::string::npos || found + part.size() > end) return false;
+    if (at == first) star_end = found;
+    from = found + part.size();
+    at = next;
+  }
+  if (star) *star = name.substr(first, star_end - first);
+  return true;
 }
+
+std::string same_file(const std::string& file) { return std::filesystem::path(file).lexically_normal().string(); }
 
 bool natural_less(const std::string& a, const std::string& b) {
   const auto digit = [](char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; };
@@ -65,7 +78,7 @@ bool natural_less(const std::string& a, const std::string& b) {
       i = end_a;
       j = end_b;
     } else {
-      if (a[i] != b[j]) return a[i] < b[j];
+      if (a[i] != b[j]) return static_cast<unsigned char>(a[i]) < static_cast<unsigned char>(b[j]);
       ++i, ++j;
     }
   }

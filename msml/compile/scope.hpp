@@ -20,9 +20,9 @@ struct Variable {
 struct Named {
   enum class Kind { variable, task, output } kind = Kind::variable;
   Location where;
-  Variable variable;            ///< variable
-  std::vector<int> nodes;       ///< task: its node, or several when it runs once per file; output: its simulation
-  int slot = -1;                ///< output: which
+  Variable variable;       ///< variable
+  std::vector<int> nodes;  ///< task: its node, or several when it runs once per file; output: its simulation
+  int slot = -1;           ///< output: which
 };
 
 using Scope = std::map<std::string, Named>;
@@ -30,7 +30,7 @@ using Scope = std::map<std::string, Named>;
 /// A piece of an attribute's text: plain, or the inside of ${…}.
 struct Piece {
   bool reference = false;
-  std::string text;             ///< trimmed where it is a reference
+  std::string text;  ///< trimmed where it is a reference
 };
 
 /// Takes text apart; `problem` is set where a reference is not closed or empty.
@@ -41,6 +41,9 @@ Indexed indexed_by(const std::string& logical, Indexed fallback);
 
 /// True if the whole name matches a pattern in which each `*` stands for any text; `star` gets what the first one held.
 bool matches(const std::string& pattern, const std::string& name, std::string* star = nullptr);
+
+/// The name under which a file that a task writes is known: "./a.vtk" and "a.vtk" are the same.
+std::string same_file(const std::string& file);
 
 /// a2 before a10: digits compare as numbers.
 bool natural_less(const std::string& a, const std::string& b);

@@ -30,8 +30,10 @@ class Matcher {
     const auto categories = categories_in(description);
     for (const Element& inner : element.children) {
       const Description* known = registry_.find(inner.tag, categories);
-      if (known && is_task(*known, description)) tag.children.push_back(match(*known, inner));
-      else unknown(inner, element, categories);
+      if (known && is_task(*known))
+        tag.children.push_back(match(*known, inner));
+      else
+        unknown(inner, element, categories);
     }
     count_children(tag);
     return tag;
@@ -39,9 +41,7 @@ class Matcher {
 
  private:
   /// Operators with children of their own are made by the compiler, not written in a workflow.
-  static bool is_task(const Description& known, const Description&) {
-    return known.category() != "operator" || known.children().empty();
-  }
+  static bool is_task(const Description& known) { return known.category() != "operator" || known.children().empty(); }
 
   void fault(const Element& element, std::string message) { faults_.push_back({element.where, std::move(message)}); }
 
@@ -49,27 +49,23 @@ class Matcher {
     std::vector<std::string> allowed;
     for (const std::string& category : categories)
       for (const Description* each : registry_.of_category(category))
-        if (is_task(*each, *each)) allowed.push_back(each->tag());
+        if (is_task(*each)) allowed.push_back(each->tag());
     if (const std::string place = home_of(inner.tag); !place.empty()) {
       fault(inner, fmt::format("{} may not stand inside {}; its place is inside {}", inner.tag, parent.tag, place));
     } else if (allowed.empty()) {
-      fault(inner, fmt::format("{} takes no tags inside, but holds {}", parent.tag, quoted(inner.tag)));
+      fault(inner, fmt::format("{} takes no tags inside, but holds {}", parent.tag, shortened(inner.tag)));
     } else {
       const std::string hint = did_you_mean(inner.tag, allowed);
       std::string list;
       if (hint.empty() && allowed.size() <= 12) list = fmt::format("; known there: {}", fmt::join(allowed, ", "));
-      fault(inner, fmt::format("unknown tag {} inside {}{}{}", quoted(inner.tag), parent.tag, hint, list));
+      fault(inner, fmt::format("unknown tag {} inside {}{}{}", shortened(inner.tag), parent.tag, hint, list));
     }
-  }
-
-  static std::string quoted(const std::string& tag) {
-    return tag.size() > 60 ? tag.substr(0, 60) + "…" : tag;
   }
 
   /// The tag inside which `tag` may stand, or "" if no such tag is known.
   std::string home_of(const std::string& tag) const {
     for (const auto& parent : registry_.descriptions())
-      if (const Description* known = registry_.find(tag, categories_in(*parent)); known && is_task(*known, *parent))
+      if (const Description* known = registry_.find(tag, categories_in(*parent)); known && is_task(*known))
         return parent->tag();
     return {};
   }
@@ -80,19 +76,23 @@ class Matcher {
       const int count = static_cast<int>(found.size());
       if (count > rule.most)
         fault(*found[static_cast<std::size_t>(rule.most)]->element,
-              fmt::format("{} holds {} of {}, but at most {} is allowed", tag.element->tag, count, words(rule),
-                          rule.most));
+              fmt::format("{} holds {} tags of the kind {}, but {} at most", tag.element->tag, count, words(rule),
+                          rule.most == 1 ? "one" : std::to_string(rule.most)));
       if (count < rule.least && tag.element->children.size() <= tag.children.size())
-        fault(*tag.element, fmt::format("{} needs {}", tag.element->tag, words(rule)));
+        fault(*tag.element, fmt::format("{} needs {}{} inside", tag.element->tag,
+                                        words(rule).find(" or ") == std::string::npos ? "" : "one of ", words(rule)));
     }
   }
 
-  /// What a category stands for in a message: "<mesh>", "one of linearTet, quadraticTet".
+  /// What a category stands for in a message: "<mesh>", "<linearTet> or <quadraticTet>".
   std::string words(const ChildRule& rule) const {
     std::vector<std::string> tags;
     for (const Description* each : registry_.of_category(rule.category))
       if (each->unavailable().empty()) tags.push_back("<" + each->tag() + ">");
-    return tags.size() == 1 ? tags.front() : fmt::format("one of {}", fmt::join(tags, ", "));
+    if (tags.empty()) return "<" + rule.category + ">";
+    const std::string last = tags.back();
+    tags.pop_back();
+    return tags.empty() ? last : fmt::format("{} or {}", fmt::join(tags, ", "), last);
   }
 
   const Registry& registry_;

@@ -33,9 +33,9 @@ struct Work {
   Compilation& out;
   Scope scope;
   std::vector<Task> tasks;
-  std::map<std::string, Written> written;                   ///< by target file name as the scene gives it
-  std::map<std::pair<std::string, Type>, int> file_nodes;   ///< by path and type
-  std::vector<std::string> steps;                           ///< names of the steps
+  std::map<std::string, Written> written;                  ///< by target file name as the scene gives it
+  std::map<std::pair<std::string, Type>, int> file_nodes;  ///< by path and type
+  std::vector<std::string> steps;                          ///< names of the steps
 
   void fault(const Location& where, std::string message) { out.faults.push_back({where, std::move(message)}); }
   void warn(const Location& where, std::string message) {
@@ -47,6 +47,8 @@ struct Work {
 
 // declare.cpp
 void declare_variables(Work& work, const Tag& variables);
+/// Gives variables the values of CompileOptions::set; a name that is no variable is a fault.
+void apply_settings(Work& work);
 void declare_tasks(Work& work, const Tag& workflow);
 /// Adds a name to the scope; a name declared before is a fault that names both lines.
 bool declare(Work& work, const std::string& name, Named named);
@@ -55,17 +57,23 @@ void declare_targets(Work& work);
 
 // resolve.cpp
 /// The text with every ${variable} replaced; nothing if it refers to a task or output, or is malformed.
-std::optional<std::string> plain_text(Work& work, const std::string& text, int depth = 0);
+std::optional<std::string> plain_text(Work& work, const std::string& text);
+/// How a message calls the user of a value: "Fill 'liver'".
+std::string owner(const Binding& user);
 /// The source of an attribute's value; faults are recorded and give an empty value.
 Source resolve(Work& work, const Binding& user, const Slot& slot, const std::string& text, const Location& where);
 /// As resolve for a known edge: checks the types of both ends.
 Source connect(Work& work, const Binding& user, const Slot& slot, Edge edge, const Location& where,
                const std::string& reference);
 
+/// As connect for the edges of a task that runs once per file: only an input that takes a list accepts several.
+Source connect_all(Work& work, const Binding& user, const Slot& slot, const std::vector<Edge>& edges,
+                   const Location& where, const std::string& reference);
+
 // files.cpp
 /// A literal file name or pattern: an edge from the task that writes it, or from a node that reads it from disk.
-Source resolve_file(Work& work, const Binding& user, const Slot& slot, const std::string& file, const std::string& logical,
-                    const Location& where);
+Source resolve_file(Work& work, const Binding& user, const Slot& slot, const std::string& file,
+                    const std::string& logical, const Location& where);
 /// Names that match a pattern: targets of tasks and files beside the scene, distinct, in natural order.
 std::vector<std::string> matching_files(Work& work, const std::string& pattern);
 

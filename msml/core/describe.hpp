@@ -41,15 +41,15 @@ struct Slot {
   Type type = Type::text;
   Role role = Role::parameter;
   std::string doc;
-  std::string unit;                      ///< "", "degree", "length", "stress", …
-  Range range;                           ///< of each number
-  Value fallback;                        ///< monostate: no default
+  std::string unit;  ///< "", "degree", "length", "stress", …
+  Range range;       ///< of each number
+  Value fallback;    ///< monostate: no default
   bool required = false;
-  std::vector<std::string> choices;      ///< allowed texts; empty = any
-  std::vector<std::size_t> counts;       ///< allowed lengths of a list; empty = any
-  std::size_t multiple_of = 0;           ///< length of the list is a multiple of this; 0 = any
-  Indexed indexes = Indexed::nodes;      ///< what a literal list of an IndexSet slot means
-  int written_output = -1;               ///< target only: position of the output slot that the file receives
+  std::vector<std::string> choices;  ///< allowed texts; empty = any
+  std::vector<std::size_t> counts;   ///< allowed lengths of a list; empty = any
+  std::size_t multiple_of = 0;       ///< length of the list is a multiple of this; 0 = any
+  Indexed indexes = Indexed::nodes;  ///< what a literal list of an IndexSet slot means
+  int written_output = -1;           ///< target only: position of the output slot that the file receives
 };
 
 /// A typed handle to a slot of one description.
@@ -64,7 +64,7 @@ struct Options {
   std::string unit = {};
   Range range = {};
   std::optional<T> fallback = {};
-  bool optional = false;                       ///< may be left out although it has no default
+  bool optional = false;  ///< may be left out although it has no default
   std::vector<std::string> choices = {};
   std::vector<std::size_t> counts = {};
   std::size_t multiple_of = 0;
@@ -92,7 +92,7 @@ class Description {
   const std::string& tag() const { return tag_; }
   const std::string& category() const { return category_; }  ///< "operator", "material", "constraint", "output", …
   const std::string& doc() const { return doc_; }
-  const std::string& source() const { return source_; }      ///< where the method comes from
+  const std::string& source() const { return source_; }            ///< where the method comes from
   const std::string& unavailable() const { return unavailable_; }  ///< why it cannot be used yet; "" = it can
   const std::vector<Slot>& slots() const { return slots_; }
   const std::vector<ChildRule>& children() const { return children_; }
@@ -129,12 +129,20 @@ class Description {
   int add_slot(Slot slot);
   template <class T>
   Key<T> add(std::string name, Role role, Options<T> options) {
-    Slot slot{.name = std::move(name), .type = type_of<T>, .role = role, .doc = std::move(options.doc),
-              .unit = std::move(options.unit), .range = options.range, .choices = std::move(options.choices),
-              .counts = std::move(options.counts), .multiple_of = options.multiple_of, .indexes = options.indexes};
+    Slot slot{.name = std::move(name),
+              .type = type_of<T>,
+              .role = role,
+              .doc = std::move(options.doc),
+              .unit = std::move(options.unit),
+              .range = options.range,
+              .choices = std::move(options.choices),
+              .counts = std::move(options.counts),
+              .multiple_of = options.multiple_of,
+              .indexes = options.indexes};
     slot.required = !options.optional && !options.fallback && role != Role::output && role != Role::target;
-    if constexpr (is_shared<T>) { /* data has no default */ }
-    else if (options.fallback) slot.fallback = std::move(*options.fallback);
+    if constexpr (is_shared<T>) { /* data has no default */
+    } else if (options.fallback)
+      slot.fallback = std::move(*options.fallback);
     return {add_slot(std::move(slot))};
   }
 
@@ -150,23 +158,29 @@ class Description {
 struct Record {
   const Description* description = nullptr;
   Location where;
-  std::string id;                  ///< attribute id or name, or ""
-  std::vector<Value> values;       ///< one per slot; monostate where an optional attribute is absent
-  std::vector<bool> given;         ///< one per slot: true where the scene says it, false where the default stands
+  std::string id;             ///< attribute id or name, or ""
+  std::vector<Value> values;  ///< one per slot; monostate where an optional attribute is absent
+  std::vector<bool> given;    ///< one per slot: true where the scene says it, false where the default stands
   std::vector<Record> children;
 
   const std::string& tag() const { return description->tag(); }
   template <class T>
-  bool has(Key<T> key) const { return type(values[static_cast<std::size_t>(key.slot)]) != Type::nothing; }
+  bool has(Key<T> key) const {
+    return type(values[static_cast<std::size_t>(key.slot)]) != Type::nothing;
+  }
   template <class T>
-  bool is_given(Key<T> key) const { return given[static_cast<std::size_t>(key.slot)]; }
+  bool is_given(Key<T> key) const {
+    return given[static_cast<std::size_t>(key.slot)];
+  }
   /// The value; throws Error where an optional attribute is absent.
   template <class T>
   const T& operator[](Key<T> key) const {
     const auto* value = std::get_if<carried_t<T>>(&values[static_cast<std::size_t>(key.slot)]);
     if (value == nullptr) missing(key.slot);
-    if constexpr (is_shared<T>) return **value;
-    else return *value;
+    if constexpr (is_shared<T>)
+      return **value;
+    else
+      return *value;
   }
   /// The shared pointer to a large value, to hand it on without a copy.
   template <class T>
@@ -190,7 +204,9 @@ class Factory : public Description {
  public:
   using Description::Description;
   template <class F>
-  void build(F function) { build_ = std::move(function); }
+  void build(F function) {
+    build_ = std::move(function);
+  }
   Result make(const Record& record) const { return build_(record); }
 
  private:

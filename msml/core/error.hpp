@@ -33,7 +33,12 @@ class Error : public std::runtime_error {
   Failure failure_;
 };
 
-/// The candidate nearest to `name` by edit distance (case ignored), or "" if none is within a third of its length.
+/// A text of the scene made fit for a message: one line without control characters, at most `most` bytes, cut between
+/// characters of UTF-8.
+std::string shortened(const std::string& text, std::size_t most = 60);
+
+/// The candidate nearest to `name` by edit distance (letters added, removed, changed or swapped; case ignored), or ""
+/// if none is within a third of its length, at least one letter.
 std::string nearest(const std::string& name, const std::vector<std::string>& candidates);
 
 /// " (did you mean 'x'?)" for the nearest candidate, or "".

@@ -17,17 +17,17 @@ using Voxels = std::variant<std::vector<std::uint8_t>, std::vector<std::int16_t>
 
 /// Centre of voxel (i j k) = origin + direction * (spacing .* (i j k)).
 struct Image {
-  std::array<int, 3> size{0, 0, 0};       ///< voxels along x, y, z
-  Vec3 origin = Vec3::Zero();             ///< centre of voxel (0 0 0)
-  Vec3 spacing = Vec3::Ones();            ///< > 0
-  Mat3 direction = Mat3::Identity();      ///< orthonormal columns
+  std::array<int, 3> size{0, 0, 0};   ///< voxels along x, y, z
+  Vec3 origin = Vec3::Zero();         ///< centre of voxel (0 0 0)
+  Vec3 spacing = Vec3::Ones();        ///< > 0
+  Mat3 direction = Mat3::Identity();  ///< orthonormal columns
   int components = 1;
   Voxels voxels;
 
-  std::size_t voxel_count() const;        ///< size[0] * size[1] * size[2]
-  std::size_t index(int i, int j, int k) const;  ///< of a voxel, component 0 of a scalar image
+  std::size_t voxel_count() const;                        ///< size[0] * size[1] * size[2]
+  std::size_t index(int i, int j, int k) const;           ///< of a voxel, component 0 of a scalar image
   double at(std::size_t voxel, int component = 0) const;  ///< as a double
-  std::string summary() const;            ///< "120 x 120 x 120 uint8"
+  std::string summary() const;                            ///< "120 x 120 x 120 uint8"
   /// Throws Error unless the sizes agree, spacing is positive, and every value is finite.
   void check() const;
 };

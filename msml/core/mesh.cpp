@@ -81,8 +81,7 @@ std::string Mesh::summary() const {
 
 void Mesh::check() const {
   check_points(points);
-  if (offsets.size() != kinds.size() + 1 || offsets.front() != 0 ||
-      offsets.back() != static_cast<int>(nodes.size()))
+  if (offsets.size() != kinds.size() + 1 || offsets.front() != 0 || offsets.back() != static_cast<int>(nodes.size()))
     throw Error("cell offsets do not fit the cells");
   for (std::size_t c = 0; c < kinds.size(); ++c) {
     if (offsets[c + 1] - offsets[c] != node_count(kinds[c]))

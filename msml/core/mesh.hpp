@@ -28,21 +28,21 @@ struct Field {
 ///   tet10: 4 on 01, 5 on 12, 6 on 20, 7 on 03, 8 on 13, 9 on 23.
 enum class CellKind : std::uint8_t { vertex, line2, line3, tri3, tri6, tet4, tet10 };
 
-int node_count(CellKind kind);        ///< nodes of one cell: 1, 2, 3, 3, 6, 4, 10
-int dimension(CellKind kind);         ///< 0, 1, 2 or 3
-int corner_count(CellKind kind);      ///< dimension + 1
-const char* name(CellKind kind);      ///< "tet4"
-int vtk_type(CellKind kind);          ///< VTK's cell type number: 1, 3, 21, 5, 22, 10, 24
+int node_count(CellKind kind);    ///< nodes of one cell: 1, 2, 3, 3, 6, 4, 10
+int dimension(CellKind kind);     ///< 0, 1, 2 or 3
+int corner_count(CellKind kind);  ///< dimension + 1
+const char* name(CellKind kind);  ///< "tet4"
+int vtk_type(CellKind kind);      ///< VTK's cell type number: 1, 3, 21, 5, 22, 10, 24
 
 /// Points and cells of mixed kinds. Cell ids run over all kinds in file order, as VTK's do.
 struct Mesh {
-  Points points;                     ///< #points x 3, reference positions
-  std::vector<CellKind> kinds;       ///< #cells
-  std::vector<int> offsets{0};       ///< #cells + 1; nodes of cell c are nodes[offsets[c] .. offsets[c+1])
-  std::vector<int> nodes;            ///< point ids, cell after cell
-  std::vector<int> regions;          ///< #cells, or empty: all in region 0. Written as cell array "region"
-  std::vector<Field> point_fields;   ///< each with #points values
-  std::vector<Field> cell_fields;    ///< each with #cells values
+  Points points;                    ///< #points x 3, reference positions
+  std::vector<CellKind> kinds;      ///< #cells
+  std::vector<int> offsets{0};      ///< #cells + 1; nodes of cell c are nodes[offsets[c] .. offsets[c+1])
+  std::vector<int> nodes;           ///< point ids, cell after cell
+  std::vector<int> regions;         ///< #cells, or empty: all in region 0. Written as cell array "region"
+  std::vector<Field> point_fields;  ///< each with #points values
+  std::vector<Field> cell_fields;   ///< each with #cells values
 
   int point_count() const { return static_cast<int>(points.rows()); }
   int cell_count() const { return static_cast<int>(kinds.size()); }
@@ -61,13 +61,13 @@ struct Mesh {
 
 /// A triangle surface.
 struct Surface {
-  Points points;                                  ///< #points x 3
-  std::vector<std::array<int, 3>> triangles;      ///< point ids, counter-clockwise seen from outside
+  Points points;                              ///< #points x 3
+  std::vector<std::array<int, 3>> triangles;  ///< point ids, counter-clockwise seen from outside
   std::vector<Field> point_fields, cell_fields;
   int point_count() const { return static_cast<int>(points.rows()); }
   int triangle_count() const { return static_cast<int>(triangles.size()); }
-  std::string summary() const;                    ///< "1,204 points, 2,400 triangles"
-  void check() const;                             ///< as Mesh::check
+  std::string summary() const;  ///< "1,204 points, 2,400 triangles"
+  void check() const;           ///< as Mesh::check
 };
 
 /// The same surface as a mesh of tri3 cells (loses nothing).

@@ -17,8 +17,8 @@ class Reporter {
   virtual ~Reporter() = default;
   /// Share of the work done, 0 to 1, and a few words ("step 3/150").
   virtual void progress(double share, const std::string& words) = 0;
-  virtual void note(const std::string& text) = 0;     ///< shown in verbose mode
-  virtual void warn(const std::string& text) = 0;     ///< always shown, and kept in the report
+  virtual void note(const std::string& text) = 0;  ///< shown in verbose mode
+  virtual void warn(const std::string& text) = 0;  ///< always shown, and kept in the report
   /// A block of lines that always belongs to the result, such as the check after a run.
   virtual void print(const std::string& text) = 0;
   /// A fact for the JSON report of the run, as JSON text: "check", {"residual": 1e-9, …}.
@@ -30,19 +30,32 @@ class Context {
  public:
   Context(const Record& args, Reporter& reporter, std::filesystem::path output_folder, int threads);
 
-  template <class T> bool has(Key<T> key) const { return args_.has(key); }
-  template <class T> const T& get(Key<T> key) const { return args_[key]; }
-  template <class T> std::shared_ptr<const T> share(Key<T> key) const { return args_.share(key); }
+  template <class T>
+  bool has(Key<T> key) const {
+    return args_.has(key);
+  }
+  template <class T>
+  const T& get(Key<T> key) const {
+    return args_[key];
+  }
+  template <class T>
+  std::shared_ptr<const T> share(Key<T> key) const {
+    return args_.share(key);
+  }
   const Record& args() const { return args_; }
 
   /// Sets an output; a large value is moved into shared storage.
   template <class T>
   void set(Key<T> key, T value) {
-    if constexpr (is_shared<T>) outputs[at(key.slot)] = std::make_shared<const T>(std::move(value));
-    else outputs[at(key.slot)] = std::move(value);
+    if constexpr (is_shared<T>)
+      outputs[at(key.slot)] = std::make_shared<const T>(std::move(value));
+    else
+      outputs[at(key.slot)] = std::move(value);
   }
   template <class T>
-  void set(Key<T> key, std::shared_ptr<const T> value) { outputs[at(key.slot)] = std::move(value); }
+  void set(Key<T> key, std::shared_ptr<const T> value) {
+    outputs[at(key.slot)] = std::move(value);
+  }
   /// Sets the output in the given slot; for operators whose outputs are not known when they are written.
   void set(int slot, Value value) {
     if (outputs.size() <= at(slot)) outputs.resize(at(slot) + 1);

@@ -26,8 +26,7 @@ std::string lower(std::string text) {
 }  // namespace
 
 void Registry::add(Operator op) {
-  if (find_operator(op.tag()))
-    throw Error("operator " + op.tag() + " is described twice", {}, Failure::internal);
+  if (find_operator(op.tag())) throw Error("operator " + op.tag() + " is described twice", {}, Failure::internal);
   operators_.push_back(std::make_shared<const Operator>(std::move(op)));
 }
 
@@ -98,7 +97,7 @@ std::vector<std::string> Registry::extensions_for(Type type, bool writing) const
 Value Registry::read(const std::filesystem::path& path, Type type) const {
   const Format* found = format(path);
   if (!found || !holds(found->reads, type))
-    throw Error(fmt::format("cannot read {} as a {}; files that hold one end in {}", path.string(), name(type),
+    throw Error(fmt::format("cannot read {} as {}; files that hold one end in {}", path.string(), with_article(type),
                             fmt::join(extensions_for(type, false), " ")));
   if (!std::filesystem::exists(path)) throw Error("no such file: " + path.string());
   if (std::filesystem::is_directory(path)) throw Error(path.string() + " is a folder, not a file");
@@ -108,7 +107,7 @@ Value Registry::read(const std::filesystem::path& path, Type type) const {
 void Registry::write(const Value& value, const std::filesystem::path& path) const {
   const Format* found = format(path);
   if (!found || !holds(found->writes, type(value)))
-    throw Error(fmt::format("cannot write a {} to {}; files that hold one end in {}", name(type(value)),
+    throw Error(fmt::format("cannot write {} to {}; files that hold one end in {}", with_article(type(value)),
                             path.string(), fmt::join(extensions_for(type(value), true), " ")));
   const std::string ending = extension(path);
   write_whole(path, [&](const std::filesystem::path& temporary) { found->write(value, temporary, ending); });

@@ -9,10 +9,15 @@
 namespace msml {
 
 const char* name(Type type) {
-  constexpr std::array<const char*, 15> names{"nothing", "boolean", "integer", "number", "text",
-                                              "list of integers", "list of numbers", "file", "Mesh", "Surface",
-                                              "Image", "IndexSet", "Field", "Series", "list of images"};
+  constexpr std::array<const char*, 15> names{
+      "nothing", "boolean", "integer", "number",   "text",  "list of integers", "list of numbers", "file",
+      "Mesh",    "Surface", "Image",   "IndexSet", "Field", "Series",           "list of images"};
   return names[static_cast<std::size_t>(type)];
+}
+
+std::string with_article(Type type) {
+  const std::string words = name(type);
+  return (std::string("aeioAEIO").find(words.front()) == std::string::npos ? "a " : "an ") + words;
 }
 
 bool is_data(Type type) { return type >= Type::mesh; }
@@ -20,15 +25,23 @@ bool is_data(Type type) { return type >= Type::mesh; }
 bool converts(Type from, Type to) {
   if (from == to) return true;
   switch (to) {
-    case Type::number: return from == Type::integer;
-    case Type::integers: return from == Type::integer;
-    case Type::numbers: return from == Type::integer || from == Type::number || from == Type::integers;
-    case Type::text: return from == Type::integer || from == Type::number || from == Type::boolean;
-    case Type::mesh: return from == Type::surface || from == Type::series || from == Type::file;
+    case Type::number:
+      return from == Type::integer;
+    case Type::integers:
+      return from == Type::integer;
+    case Type::numbers:
+      return from == Type::integer || from == Type::number || from == Type::integers;
+    case Type::text:
+      return from == Type::integer || from == Type::number || from == Type::boolean;
+    case Type::mesh:
+      return from == Type::surface || from == Type::series || from == Type::file;
     case Type::surface:
-    case Type::image: return from == Type::file;
-    case Type::images: return from == Type::image || from == Type::file;
-    default: return false;
+    case Type::image:
+      return from == Type::file;
+    case Type::images:
+      return from == Type::image || from == Type::file;
+    default:
+      return false;
   }
 }
 
@@ -52,14 +65,20 @@ Value convert(const Value& value, Type to) {
   const Type from = type(value);
   if (from == to) return value;
   if (!converts(from, to) || from == Type::file)
-    throw Error(fmt::format("a {} cannot be used as a {}", name(from), name(to)));
+    throw Error(fmt::format("{} cannot be used as {}", with_article(from), with_article(to)));
   switch (to) {
-    case Type::number: return static_cast<double>(std::get<Integer>(value));
-    case Type::integers: return std::vector<Integer>{std::get<Integer>(value)};
-    case Type::numbers: return numbers(value);
-    case Type::text: return text(value);
-    case Type::images: return ImageList{std::get<ImagePtr>(value)};
-    default: break;
+    case Type::number:
+      return static_cast<double>(std::get<Integer>(value));
+    case Type::integers:
+      return std::vector<Integer>{std::get<Integer>(value)};
+    case Type::numbers:
+      return numbers(value);
+    case Type::text:
+      return text(value);
+    case Type::images:
+      return ImageList{std::get<ImagePtr>(value)};
+    default:
+      break;
   }
   if (from == Type::series) {
     const MeshPtr last = std::get<SeriesPtr>(value)->last;
@@ -71,10 +90,17 @@ Value convert(const Value& value, Type to) {
 
 namespace {
 
-template <class... F> struct overloaded : F... { using F::operator()...; };
-template <class... F> overloaded(F...) -> overloaded<F...>;
+template <class... F>
+struct overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+overloaded(F...) -> overloaded<F...>;
 
-template <class T> std::size_t held(const std::vector<T>& list) { return list.size() * sizeof(T); }
+template <class T>
+std::size_t held(const std::vector<T>& list) {
+  return list.size() * sizeof(T);
+}
 std::size_t held(const std::vector<Field>& fields) {
   std::size_t sum = 0;
   for (const Field& field : fields) sum += held(field.values);
@@ -95,27 +121,27 @@ std::size_t held(const Image& image) {
 }  // namespace
 
 std::string summary(const Value& value) {
-  return std::visit(
-      overloaded{[](std::monostate) { return std::string("nothing"); },
-                 [](bool flag) { return std::string(flag ? "true" : "false"); },
-                 [](Integer whole) { return std::to_string(whole); },
-                 [](double number) { return fmt::format("{:.6g}", number); },
-                 [](const std::string& words) { return words; },
-                 [](const std::vector<Integer>& list) { return fmt::format("{} integers", list.size()); },
-                 [](const std::vector<double>& list) { return fmt::format("{} numbers", list.size()); },
-                 [](const File& file) { return file.path.filename().string(); },
-                 [](const MeshPtr& mesh) { return mesh->summary(); },
-                 [](const SurfacePtr& surface) { return surface->summary(); },
-                 [](const ImagePtr& image) { return image->summary(); },
-                 [](const IndexSetPtr& set) {
-                   return fmt::format("{} {}", with_commas(static_cast<long long>(set->ids.size())), name(set->kind));
-                 },
-                 [](const FieldPtr& field) {
-                   return fmt::format("field {} with {} values", field->name, field->values.size());
-                 },
-                 [](const SeriesPtr& series) { return fmt::format("{} states", series->files.size()); },
-                 [](const ImageList& images) { return fmt::format("{} images", images.size()); }},
-      value);
+  return std::visit(overloaded{[](std::monostate) { return std::string("nothing"); },
+                               [](bool flag) { return std::string(flag ? "true" : "false"); },
+                               [](Integer whole) { return std::to_string(whole); },
+                               [](double number) { return fmt::format("{:.6g}", number); },
+                               [](const std::string& words) { return words; },
+                               [](const std::vector<Integer>& list) { return fmt::format("{} integers", list.size()); },
+                               [](const std::vector<double>& list) { return fmt::format("{} numbers", list.size()); },
+                               [](const File& file) { return file.path.filename().string(); },
+                               [](const MeshPtr& mesh) { return mesh->summary(); },
+                               [](const SurfacePtr& surface) { return surface->summary(); },
+                               [](const ImagePtr& image) { return image->summary(); },
+                               [](const IndexSetPtr& set) {
+                                 return fmt::format("{} {}", with_commas(static_cast<long long>(set->ids.size())),
+                                                    name(set->kind));
+                               },
+                               [](const FieldPtr& field) {
+                                 return fmt::format("field {} with {} values", field->name, field->values.size());
+                               },
+                               [](const SeriesPtr& series) { return fmt::format("{} states", series->files.size()); },
+                               [](const ImageList& images) { return fmt::format("{} images", images.size()); }},
+                    value);
 }
 
 std::size_t bytes(const Value& value) {

@@ -22,11 +22,11 @@ struct File {
 
 /// The states of a simulation on disk, and the last of them in memory.
 struct Series {
-  std::string pattern;                        ///< "disp_*.vtu", relative to the output folder
-  std::filesystem::path folder;               ///< the output folder
-  std::vector<double> times;                  ///< one per file
+  std::string pattern;           ///< "disp_*.vtu", relative to the output folder
+  std::filesystem::path folder;  ///< the output folder
+  std::vector<double> times;     ///< one per file
   std::vector<std::filesystem::path> files;
-  std::shared_ptr<const Mesh> last;           ///< points deformed, field "displacement" = x - X
+  std::shared_ptr<const Mesh> last;  ///< points deformed, field "displacement" = x - X
 };
 
 using MeshPtr = std::shared_ptr<const Mesh>;
@@ -38,32 +38,70 @@ using SeriesPtr = std::shared_ptr<const Series>;
 using ImageList = std::vector<ImagePtr>;
 
 /// monostate = no value. Large values are shared, never copied.
-using Value = std::variant<std::monostate, bool, Integer, double, std::string, std::vector<Integer>,
-                           std::vector<double>, File, MeshPtr, SurfacePtr, ImagePtr, IndexSetPtr, FieldPtr, SeriesPtr,
-                           ImageList>;
+using Value =
+    std::variant<std::monostate, bool, Integer, double, std::string, std::vector<Integer>, std::vector<double>, File,
+                 MeshPtr, SurfacePtr, ImagePtr, IndexSetPtr, FieldPtr, SeriesPtr, ImageList>;
 
 /// One type per alternative of Value, in the same order.
 enum class Type : std::uint8_t {
-  nothing, boolean, integer, number, text, integers, numbers, file, mesh, surface, image, index_set, field, series,
+  nothing,
+  boolean,
+  integer,
+  number,
+  text,
+  integers,
+  numbers,
+  file,
+  mesh,
+  surface,
+  image,
+  index_set,
+  field,
+  series,
   images
 };
 
 /// The alternative of Value that carries a T: large values travel as shared pointers.
-template <class T> struct carried { using type = T; };
-template <> struct carried<Mesh> { using type = MeshPtr; };
-template <> struct carried<Surface> { using type = SurfacePtr; };
-template <> struct carried<Image> { using type = ImagePtr; };
-template <> struct carried<IndexSet> { using type = IndexSetPtr; };
-template <> struct carried<Field> { using type = FieldPtr; };
-template <> struct carried<Series> { using type = SeriesPtr; };
-template <class T> using carried_t = typename carried<T>::type;
-template <class T> constexpr bool is_shared = !std::is_same_v<carried_t<T>, T>;
+template <class T>
+struct carried {
+  using type = T;
+};
+template <>
+struct carried<Mesh> {
+  using type = MeshPtr;
+};
+template <>
+struct carried<Surface> {
+  using type = SurfacePtr;
+};
+template <>
+struct carried<Image> {
+  using type = ImagePtr;
+};
+template <>
+struct carried<IndexSet> {
+  using type = IndexSetPtr;
+};
+template <>
+struct carried<Field> {
+  using type = FieldPtr;
+};
+template <>
+struct carried<Series> {
+  using type = SeriesPtr;
+};
+template <class T>
+using carried_t = typename carried<T>::type;
+template <class T>
+constexpr bool is_shared = !std::is_same_v<carried_t<T>, T>;
 
 namespace detail {
 template <class T, std::size_t I = 0>
 constexpr std::size_t alternative() {
-  if constexpr (std::is_same_v<std::variant_alternative_t<I, Value>, T>) return I;
-  else return alternative<T, I + 1>();
+  if constexpr (std::is_same_v<std::variant_alternative_t<I, Value>, T>)
+    return I;
+  else
+    return alternative<T, I + 1>();
 }
 }  // namespace detail
 
@@ -73,6 +111,9 @@ inline Type type(const Value& value) { return static_cast<Type>(value.index()); 
 
 /// "Mesh", "IndexSet", "number", "list of numbers", …: the words used in messages, help and the schema.
 const char* name(Type type);
+
+/// The same with its article: "a Mesh", "an IndexSet".
+std::string with_article(Type type);
 
 /// True for the types that a file can hold: mesh, surface, image, images, index_set, field.
 bool is_data(Type type);

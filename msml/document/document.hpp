@@ -23,8 +23,8 @@ struct Element {
 };
 
 struct Document {
-  std::string file;               ///< as named on the command line
-  std::filesystem::path folder;   ///< of the file: inputs are looked up from here
+  std::string file;              ///< as named on the command line
+  std::filesystem::path folder;  ///< of the file: inputs are looked up from here
   Element root;
 };
 
@@ -35,8 +35,8 @@ struct Fault {
   std::string str() const { return where.str() + ": " + message; }
 };
 
-/// Reads a scene. Faults of the XML itself (truncated, duplicate attributes, stray text, entity declarations, not UTF-8,
-/// larger than 64 MiB) are added to `faults`; the root is then empty or partial.
+/// Reads a scene. Faults of the XML itself (truncated, duplicate attributes, stray text, entity declarations, not
+/// UTF-8, larger than 64 MiB) are added to `faults`; the root is then empty or partial.
 Document read_document(const std::filesystem::path& path, std::vector<Fault>& faults);
 
 /// The same from text; `file` is the name used in messages.

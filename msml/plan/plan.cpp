@@ -29,20 +29,25 @@ void check_requests(const Graph& graph, const std::vector<std::string>& requeste
   }
   for (const std::string& id : requested)
     if (std::none_of(graph.nodes.begin(), graph.nodes.end(), [&](const Node& node) { return named(node, id); }))
-      throw Error(fmt::format("--request {}: the scene has no task or output of that name{}", id, did_you_mean(id, ids)),
-                  {graph.scene, 0});
+      throw Error(
+          fmt::format("--request {}: the scene has no task or output of that name{}", id, did_you_mean(id, ids)),
+          {graph.scene, 0});
 }
 
 void mark(const Graph& graph, int node, std::vector<bool>& runs) {
-  if (runs[static_cast<std::size_t>(node)]) return;
-  runs[static_cast<std::size_t>(node)] = true;
-  for (const int need : graph.nodes[static_cast<std::size_t>(node)].needs) mark(graph, need, runs);
+  std::vector<int> open{node};
+  while (!open.empty()) {
+    const auto i = static_cast<std::size_t>(open.back());
+    open.pop_back();
+    if (runs[i]) continue;
+    runs[i] = true;
+    open.insert(open.end(), graph.nodes[i].needs.begin(), graph.nodes[i].needs.end());
+  }
 }
 
 std::string inputs(const Graph& graph, const Node& node) {
   std::string text;
-  for (const int need : node.needs)
-    text += (text.empty() ? "" : ", ") + graph.nodes[static_cast<std::size_t>(need)].id;
+  for (const int need : node.needs) text += (text.empty() ? "" : ", ") + graph.nodes[static_cast<std::size_t>(need)].id;
   return text;
 }
 

@@ -9,13 +9,13 @@
 namespace msml {
 
 struct Plan {
-  std::vector<bool> runs;          ///< one per node
-  std::vector<int> order;          ///< the nodes that run, each after all it needs
-  std::vector<int> skipped;        ///< tasks and simulations that nothing asks for, in place order
+  std::vector<bool> runs;    ///< one per node
+  std::vector<int> order;    ///< the nodes that run, each after all it needs
+  std::vector<int> skipped;  ///< tasks and simulations that nothing asks for, in place order
 };
 
-/// A node runs if a file target, a scene output, a report or one of `requested` (ids of tasks or scene outputs) needs it.
-/// Throws Error for a requested id that does not exist.
+/// A node runs if a file target, a scene output, a report or one of `requested` (ids of tasks or scene outputs) needs
+/// it. Throws Error for a requested id that does not exist.
 Plan make_plan(const Graph& graph, const std::vector<std::string>& requested = {});
 
 /// What exec --dry-run prints: the nodes in order with inputs and targets, then those that do not run.

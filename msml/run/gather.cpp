@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "msml/compile/literal.hpp"
+
 namespace msml {
 namespace {
 
@@ -28,12 +30,16 @@ class Gatherer {
 
   Record record(const Binding& binding) const {
     Record out{.description = binding.description, .where = binding.where, .id = binding.id, .given = binding.given};
+    const auto& slots = binding.description->slots();
     for (std::size_t i = 0; i < binding.sources.size(); ++i) {
       try {
-        out.values.push_back(value(binding.sources[i], binding.description->slots()[i].type));
+        out.values.push_back(value(binding.sources[i], slots[i].type));
       } catch (const Error& error) {
-        throw Error(binding.description->slots()[i].name + ": " + error.what(), binding.places[i], error.failure());
+        throw Error(slots[i].name + ": " + error.what(), binding.places[i], error.failure());
       }
+      if (std::holds_alternative<Value>(binding.sources[i])) continue;  // checked when the scene was compiled
+      if (const std::string problem = value_problem(slots[i], out.values.back()); !problem.empty())
+        throw Error(problem, binding.places[i]);
     }
     for (const Binding& child : binding.children) out.children.push_back(record(child));
     return out;

@@ -39,13 +39,26 @@ class NodeReporter : public Reporter {
   std::mutex mutex_;
 };
 
+void check_finite(const std::vector<double>& numbers, const std::string& what) {
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    if (!std::isfinite(numbers[i])) throw Error(fmt::format("value {} of {} is not a finite number", i, what));
+}
+
+template <class Geometry>
+void check_geometry(const Geometry& geometry) {
+  geometry.check();
+  for (const auto* fields : {&geometry.point_fields, &geometry.cell_fields})
+    for (const Field& field : *fields) check_finite(field.values, "the field " + field.name);
+}
+
 /// Data that later nodes and files may rely on: sizes fit, all numbers finite.
 void check_output(const Value& value) {
-  if (const auto* mesh = std::get_if<MeshPtr>(&value)) (*mesh)->check();
-  if (const auto* surface = std::get_if<SurfacePtr>(&value)) (*surface)->check();
+  if (const auto* mesh = std::get_if<MeshPtr>(&value)) check_geometry(**mesh);
+  if (const auto* surface = std::get_if<SurfacePtr>(&value)) check_geometry(**surface);
   if (const auto* image = std::get_if<ImagePtr>(&value)) (*image)->check();
-  if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number))
-    throw Error("the result is not a finite number");
+  if (const auto* field = std::get_if<FieldPtr>(&value)) check_finite((*field)->values, "the field " + (*field)->name);
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) check_finite(*list, "the result");
+  if (const auto* number = std::get_if<double>(&value)) check_finite({*number}, "the result");
 }
 
 std::string as_text(const Value& value) {
@@ -83,8 +96,14 @@ class NodeRun {
  public:
   NodeRun(const Graph& graph, int index, const Results& results, const Registry& registry, const RunOptions& options,
           Watcher& watcher, NodeReport& report)
-      : graph_(graph), node_(graph.nodes[static_cast<std::size_t>(index)]), index_(index), results_(results),
-        registry_(registry), options_(options), watcher_(watcher), report_(report) {}
+      : graph_(graph),
+        node_(graph.nodes[static_cast<std::size_t>(index)]),
+        index_(index),
+        results_(results),
+        registry_(registry),
+        options_(options),
+        watcher_(watcher),
+        report_(report) {}
 
   std::vector<Value> run() {
     if (node_.kind == NodeKind::file) return {read_file()};
@@ -128,13 +147,15 @@ class NodeRun {
   std::vector<Value> run_each_state() {
     const auto slot = static_cast<std::size_t>(node_.each_state);
     const Edge edge = std::get<Edge>(node_.args.sources[slot]);
-    const auto series = std::get<SeriesPtr>(results_[static_cast<std::size_t>(edge.node)][static_cast<std::size_t>(edge.slot)]);
+    const auto series =
+        std::get<SeriesPtr>(results_[static_cast<std::size_t>(edge.node)][static_cast<std::size_t>(edge.slot)]);
     std::vector<Value> outputs;
     Record args = record();
     for (std::size_t i = 0; i < series->files.size(); ++i) {
       args.values[slot] = registry_.read(series->files[i], Type::mesh);
       outputs = run_once(args, fmt::format("{:04}", i));
-      watcher_.progress(index_, static_cast<double>(i + 1) / static_cast<double>(series->files.size()), "state by state");
+      watcher_.progress(index_, static_cast<double>(i + 1) / static_cast<double>(series->files.size()),
+                        "state by state");
     }
     return outputs;
   }
@@ -163,6 +184,8 @@ std::vector<Value> run_node(const Graph& graph, int index, const Results& result
     throw Error(named("not enough memory"), node.where, Failure::internal);
   } catch (const std::exception& error) {
     throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
+  } catch (...) {
+    throw Error(named("unexpected failure without a message"), node.where, Failure::internal);
   }
 }
 

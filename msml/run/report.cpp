@@ -20,12 +20,20 @@ const char* status_name(NodeStatus status) {
 }
 
 Json node_json(const Node& node, const NodeReport& report) {
-  Json json{{"id", node.id}, {"operator", node.tag()}, {"line", node.where.line},
-            {"status", status_name(report.status)}, {"seconds", report.seconds},
-            {"outputBytes", report.output_bytes}, {"peakBytes", report.peak_bytes}, {"result", report.summary}};
+  Json json{{"id", node.id},
+            {"operator", node.tag()},
+            {"line", node.where.line},
+            {"status", status_name(report.status)},
+            {"seconds", report.seconds},
+            {"outputBytes", report.output_bytes},
+            {"peakBytes", report.peak_bytes},
+            {"result", report.summary}};
   if (!report.warnings.empty()) json["warnings"] = report.warnings;
   for (const auto& file : report.files) json["files"].push_back(file.string());
-  for (const auto& [name, text] : report.facts) json[name] = Json::parse(text, nullptr, false);
+  for (const auto& [name, text] : report.facts) {
+    const Json fact = Json::parse(text, nullptr, false);
+    json[name] = fact.is_discarded() ? Json(text) : fact;
+  }
   return json;
 }
 
@@ -48,8 +56,8 @@ std::string summary_table(const Graph& graph, const Plan& plan, const RunResult&
     tag = std::max(tag, graph.nodes[static_cast<std::size_t>(i)].tag().size());
     id = std::max(id, graph.nodes[static_cast<std::size_t>(i)].id.size());
   }
-  std::string text = fmt::format("{:<{}}  {:<{}}  {:>12}  {:>12}  {:>12}  result\n", "node", tag, "id", id, "time",
-                                 "holds", "peak");
+  std::string text =
+      fmt::format("{:<{}}  {:<{}}  {:>12}  {:>12}  {:>12}  result\n", "node", tag, "id", id, "time", "holds", "peak");
   for (const int i : plan.order) {
     const Node& node = graph.nodes[static_cast<std::size_t>(i)];
     const NodeReport& report = result.nodes[static_cast<std::size_t>(i)];
@@ -59,17 +67,18 @@ std::string summary_table(const Graph& graph, const Plan& plan, const RunResult&
                         ran ? megabytes(report.peak_bytes) : "-",
                         report.status == NodeStatus::done ? report.summary : status_name(report.status));
   }
-  return text + fmt::format("{:<{}}  {:<{}}  {:>12}  {:>12}  {:>12}", "total", tag, "", id, duration(result.seconds), "",
-                            megabytes(peak(result)));
+  return text + fmt::format("{:<{}}  {:<{}}  {:>12}  {:>12}  {:>12}", "total", tag, "", id, duration(result.seconds),
+                            "", megabytes(peak(result)));
 }
 
 std::string report_json(const Graph& graph, const Plan& plan, const RunResult& result, const RunOptions& options) {
-  Json json{{"program", "msml"}, {"version", MSML_VERSION}, {"scene", graph.scene}, {"status", status(result)},
-            {"seconds", result.seconds}, {"peakBytes", peak(result)}, {"jobs", options.jobs},
-            {"threads", options.threads}, {"outputFolder", options.output_folder.string()}};
+  Json json{{"program", "msml"},        {"version", MSML_VERSION},    {"scene", graph.scene},
+            {"status", status(result)}, {"seconds", result.seconds},  {"peakBytes", peak(result)},
+            {"jobs", options.jobs},     {"threads", options.threads}, {"outputFolder", options.output_folder.string()}};
   json["nodes"] = Json::array();
   for (const int i : plan.order)
-    json["nodes"].push_back(node_json(graph.nodes[static_cast<std::size_t>(i)], result.nodes[static_cast<std::size_t>(i)]));
+    json["nodes"].push_back(
+        node_json(graph.nodes[static_cast<std::size_t>(i)], result.nodes[static_cast<std::size_t>(i)]));
   json["notRun"] = Json::array();
   for (const int i : plan.skipped) json["notRun"].push_back(graph.nodes[static_cast<std::size_t>(i)].id);
   json["errors"] = Json::array();

@@ -24,8 +24,14 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 class Scheduler {
  public:
   Scheduler(const Graph& graph, const Plan& plan, const Registry& registry, const RunOptions& options, Watcher& watcher)
-      : graph_(graph), plan_(plan), registry_(registry), options_(options), watcher_(watcher),
-        results_(graph.nodes.size()), users_(graph.nodes.size(), 0), open_(graph.nodes.size(), 0) {
+      : graph_(graph),
+        plan_(plan),
+        registry_(registry),
+        options_(options),
+        watcher_(watcher),
+        results_(graph.nodes.size()),
+        users_(graph.nodes.size(), 0),
+        open_(graph.nodes.size(), 0) {
     result_.nodes.resize(graph.nodes.size());
     for (std::size_t position = 0; position < plan.order.size(); ++position) {
       const int node = plan.order[position];

@@ -18,9 +18,9 @@ enum class NodeStatus : std::uint8_t { waiting, done, failed };
 struct NodeReport {
   NodeStatus status = NodeStatus::waiting;
   double seconds = 0;
-  std::size_t output_bytes = 0;      ///< held by its values
-  std::size_t peak_bytes = 0;        ///< most memory of the whole process while it ran
-  std::string summary;               ///< of its first output
+  std::size_t output_bytes = 0;  ///< held by its values
+  std::size_t peak_bytes = 0;    ///< most memory of the whole process while it ran
+  std::string summary;           ///< of its first output
   std::vector<std::string> warnings;
   std::map<std::string, std::string> facts;  ///< JSON texts by name, such as "check"
   std::vector<std::filesystem::path> files;  ///< written
@@ -40,8 +40,8 @@ class Watcher {
 
 struct RunOptions {
   std::filesystem::path output_folder = ".";
-  int jobs = 1;       ///< nodes at once
-  int threads = 1;    ///< threads inside a node
+  int jobs = 1;     ///< nodes at once
+  int threads = 1;  ///< threads inside a node
 };
 
 /// How a run ended: one report per node of the graph, and the first error if a node failed.

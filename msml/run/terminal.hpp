@@ -26,7 +26,7 @@ class Terminal : public Watcher {
 
  private:
   const Node& node(int i) const { return graph_.nodes[static_cast<std::size_t>(i)]; }
-  void line(const std::string& text);   ///< removes the bar, writes the line
+  void line(const std::string& text);  ///< removes the bar, writes the line
   void draw(int node, double share, const std::string& words);
   std::string head(int node, int number) const;
 
