@@ -85,7 +85,7 @@ class Cholesky final : public LinearSystem {
       if (refinement > 0 && now > 0.5 * before) break;
       before = now;
     }
-    return norm(residual) <= 1e-4 * target ? LinearStatus::done : LinearStatus::singular;
+    return norm(residual) <= 1e-6 * target ? LinearStatus::done : LinearStatus::singular;
   }
 
   std::size_t factor_bytes() const override {
