@@ -65,6 +65,18 @@ std::string element_at(const Simulation& simulation, int id) {
   return id < 0 ? std::string() : fmt::format(" (element {} at {})", id, place(centroid(*simulation.body.mesh, id)));
 }
 
+std::string balance_text(const fe::Check& check, bool dynamic) {
+  std::string text =
+      line("residual", fmt::format("{:.2e} of {:.4g}, the largest force", check.residual, check.load_scale));
+  text += line("sum of loads", sum_text(check.sum_loads, check.load_scale));
+  text += line("sum of reactions", sum_text(check.sum_reactions, check.load_scale));
+  if (dynamic) {
+    text += line("sum of inertia", sum_text(check.sum_inertia, check.load_scale));
+    text += line("sum of damping", sum_text(check.sum_damping, check.load_scale));
+  }
+  return text + line("balance of these", fmt::format("{:.2e}", check.balance));
+}
+
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
@@ -77,15 +89,10 @@ Json steps_json(const Simulation& simulation) {
 
 std::string check_text(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst) {
   const fe::Check& check = outcome.check;
-  std::string text = fmt::format("check of '{}' at t = {:.6g}\n", simulation.name, outcome.state.time);
-  text += line("residual", fmt::format("{:.2e} of {:.4g}, the largest force", check.residual, check.load_scale));
-  text += line("sum of loads", sum_text(check.sum_loads, check.load_scale));
-  text += line("sum of reactions", sum_text(check.sum_reactions, check.load_scale));
-  if (simulation.model.settings.integrator != fe::Integrator::static_) {
-    text += line("sum of inertia", sum_text(check.sum_inertia, check.load_scale));
-    text += line("sum of damping", sum_text(check.sum_damping, check.load_scale));
-  }
-  text += line("balance of these", fmt::format("{:.2e}", check.balance));
+  const bool balanced = outcome.stop == fe::Stop::converged || outcome.stop == fe::Stop::interrupted;
+  std::string text = fmt::format("check of '{}' at t = {:.6g}", simulation.name, outcome.state.time);
+  text += balanced ? "\n" : fmt::format(", the last good state (stopped: {})\n", fe::name(outcome.stop));
+  if (balanced) text += balance_text(check, simulation.model.settings.integrator != fe::Integrator::static_);
   text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));
   text += line("mass", fmt::format("{:.6g}", check.mass));
   text +=
@@ -97,7 +104,7 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   text += line("smallest radius ratio",
                fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
   if (check.lowest_period > 0)
-    text += line("lowest period", fmt::format("{:.4g}, damped by {:.2g} % a cycle by the time step",
+    text += line("lowest period", fmt::format("{:.4g}, damped by {:.3g} % a cycle by the time step",
                                               check.lowest_period, 100 * check.damped_per_cycle));
   text += line("unknowns", with_commas(outcome.unknowns));
   text += line("solves", fmt::format("{} of Newton, {} linear", outcome.newton_iterations, outcome.linear_solves));

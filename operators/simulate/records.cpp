@@ -41,8 +41,7 @@ void refuse(const Record& record, const std::string& text) {
 }
 
 std::string located(const Record& record) {
-  const std::string where = record.where.str();
-  return where.empty() ? record.tag() : where + ": " + record.tag();
+  return record.where.line <= 0 ? record.tag() : fmt::format("line {}: {}", record.where.line, record.tag());
 }
 
 std::string counted(long long count, const std::string& noun) {

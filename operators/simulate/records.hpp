@@ -25,7 +25,7 @@ const IndexSet& indices_of(const Record& record);
 /// Throws Error "TAG: TEXT" at the place of the tag.
 [[noreturn]] void refuse(const Record& record, const std::string& text);
 
-/// "file:12: TAG", or the tag alone where no place is known: the start of a warning.
+/// "line 12: TAG", or the tag alone where no place is known: the start of a warning.
 std::string located(const Record& record);
 
 /// What the tag's own description builds from the record. Throws an internal Error if it builds something else.

@@ -101,6 +101,15 @@ TEST(CheckReport, ColumnsAreAligned) {
   EXPECT_THAT(text, HasSubstr("\n  smallest dihedral angle 45 degrees (element "));
 }
 
+TEST(CheckReport, AStoppedRunShowsItsLastGoodStateWithoutABalance) {
+  const auto simulation = simulation_of(0.3);
+  auto outcome = harmless();
+  outcome.stop = fe::Stop::diverged;
+  const std::string text = check_text(simulation, outcome, worst_shape(simulation.body));
+  EXPECT_THAT(text, HasSubstr("at t = 0, the last good state (stopped: diverged)\n"));
+  EXPECT_THAT(text, testing::Not(HasSubstr("residual")));
+}
+
 TEST(CheckReport, JsonHoldsNullForWhatIsNotANumber) {
   const auto simulation = simulation_of(0.3);
   auto outcome = harmless();

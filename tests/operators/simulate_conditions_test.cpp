@@ -173,10 +173,9 @@ TEST(ForceConstraint, ActsOnEveryNodeAndWarnsOfPointsWithoutElements) {
                              "forceConstraint");
   const auto built = build(language, scene);
   EXPECT_THAT(built.step().forces.at(0).nodes, ElementsAre(4));
-  EXPECT_THAT(
-      built.listener.warnings,
-      ElementsAre("scene.xml:7: forceConstraint: no force acts on 1 of the 2 nodes in indices, which belong to no "
-                  "element; name nodes of the body"));
+  EXPECT_THAT(built.listener.warnings,
+              ElementsAre("line 7: forceConstraint: no force acts on 1 of the 2 nodes in indices, which belong to no "
+                          "element; name nodes of the body"));
 }
 
 TEST(SurfacePressure, NodesMeanTheBoundaryFacesWithAllCornersAmongThem) {
@@ -348,9 +347,8 @@ TEST(ForStep, ANameThatIsNoStepIsWarnedOf) {
   scene.constraints = {condition(language, "fixedConstraint", {{"indices", nodes({0})}}, "tvo")};
   const auto built = build(language, scene);
   EXPECT_THAT(built.step(0).prescribed, IsEmpty());
-  EXPECT_THAT(built.listener.warnings,
-              ElementsAre("scene.xml:7: fixedConstraint never acts: forStep = 'tvo' is no step "
-                          "(did you mean 'two'?); the steps are one, two"));
+  EXPECT_THAT(built.listener.warnings, ElementsAre("line 7: fixedConstraint never acts: forStep = 'tvo' is no step "
+                                                   "(did you mean 'two'?); the steps are one, two"));
 }
 
 TEST(ForStep, ADisplacementHoldsInLaterStepsWhereTheySayNothingOfItsNodes) {

@@ -66,9 +66,8 @@ TEST(Regions, ASingleRegionExtendsToTheRestWithACount) {
   Listener listener;
   const auto simulation = build_model(bar(language, {range(0, 9)}).record(language), listener, 1);
   EXPECT_EQ(simulation.model.regions[0].elements.size(), 12U);
-  EXPECT_THAT(listener.warnings,
-              ElementsAre("scene.xml:7: region: the indices of region 'a' leave out 3 of 12 elements; as "
-                          "the only region it is extended to them. Widen its indices"));
+  EXPECT_THAT(listener.warnings, ElementsAre("line 7: region: the indices of region 'a' leave out 3 of 12 elements; as "
+                                             "the only region it is extended to them. Widen its indices"));
 }
 
 TEST(Regions, ElementsInNoneOfSeveralRegionsAreCountedAndLocated) {
@@ -84,9 +83,8 @@ TEST(Regions, OfTwoRegionsThatClaimAnElementTheLaterWins) {
   const auto simulation = build_model(bar(language, {range(0, 8), range(6, 12)}).record(language), listener, 1);
   EXPECT_EQ(simulation.model.regions[0].elements, range(0, 6));
   EXPECT_EQ(simulation.model.regions[1].elements, range(6, 12));
-  EXPECT_THAT(listener.warnings,
-              ElementsAre("scene.xml:7: region: regions 'a' and 'b' both claim 2 elements; the later, "
-                          "'b', has them. Leave them out of the indices of one"));
+  EXPECT_THAT(listener.warnings, ElementsAre("line 7: region: regions 'a' and 'b' both claim 2 elements; the later, "
+                                             "'b', has them. Leave them out of the indices of one"));
 }
 
 TEST(Regions, ARegionWithoutElementsIsWarnedOfAndLeftOut) {
@@ -94,7 +92,7 @@ TEST(Regions, ARegionWithoutElementsIsWarnedOfAndLeftOut) {
   Listener listener;
   const auto simulation = build_model(bar(language, {range(0, 12), {}}).record(language), listener, 1);
   EXPECT_EQ(simulation.model.regions.size(), 1U);
-  EXPECT_THAT(listener.warnings, ElementsAre("scene.xml:7: region: region 'b' has no elements. Check its indices, or "
+  EXPECT_THAT(listener.warnings, ElementsAre("line 7: region: region 'b' has no elements. Check its indices, or "
                                              "leave it out"));
 }
 

@@ -108,7 +108,7 @@ TEST(Step, DefaultsAreThoseOfMsml) {
   EXPECT_EQ(model.steps[0].dt, 0.05);
   EXPECT_EQ(model.steps[0].count, 100);
   EXPECT_EQ(model.steps[0].gravity, Vec3(0, 0, -9.81));
-  EXPECT_THAT(listener.notes, ElementsAre("scene.xml:7: step: no gravity given, so it is (0, 0, -9.81) as in MSML"));
+  EXPECT_THAT(listener.notes, ElementsAre("line 7: step: no gravity given, so it is (0, 0, -9.81) as in MSML"));
 }
 
 TEST(Displacement, TimestepAndEverySayWhichStates) {
