@@ -77,10 +77,11 @@ struct Settings {
   Integrator integrator = Integrator::implicit_euler;
   LinearSolver linear_solver = LinearSolver::automatic;
   Preconditioner preconditioner = Preconditioner::automatic;
-  double damping_mass = 0;       ///< Rayleigh alpha, 1/time, >= 0
-  double damping_stiffness = 0;  ///< Rayleigh beta, time, >= 0
+  double damping_mass = 0;  ///< Rayleigh alpha, 1/time, >= 0
+  double damping_stiffness =
+      0;  ///< Rayleigh beta, time, >= 0; of the semidefinite tangent at the start of the time step
   bool lumped_mass = false;
-  int newton_iterations = 25;  ///< at most; 1 = one linear solve per step
+  int newton_iterations = 25;  ///< at most; 1 = one linear solve per step, taken as it is
   double tolerance = 1e-8;     ///< residual relative to the loads
   double linear_tolerance = 1e-10;
   int load_steps = 1;  ///< static: the loads are applied in so many equal parts
@@ -146,7 +147,9 @@ enum class Stop {
 };
 const char* name(Stop stop);
 
-/// How a run ended and what it cost. Non-convergence is a result with a reason, never an exception.
+/// How a run ended and what it cost. Where a tangent is not positive definite, that Newton iteration takes the law's
+/// semidefinite one; a static equilibrium whose own tangent is indefinite is unstable: indefinite_tangent.
+/// Non-convergence is a result with a reason, never an exception.
 struct Outcome {
   Stop stop = Stop::converged;
   std::string diagnosis;  ///< step, residual history, worst element with its place, what to try; "" if converged

@@ -27,8 +27,13 @@ ElementMass<nodes> consistent_mass(const Points& points, const int* ids, double 
 /// equal to the row sums for tet4 (Hinton, Rock and Zienkiewicz 1976, doi 10.1002/eqe.4290040305).
 template <int nodes>
 ElementMass<nodes> lumped_mass(const ElementMass<nodes>& consistent) {
+  double total = 0, diagonal = 0;
+  for (int a = 0; a < nodes; ++a) {
+    diagonal += consistent(a, a);
+    for (int b = 0; b < nodes; ++b) total += consistent(a, b);
+  }
   ElementMass<nodes> M = ElementMass<nodes>::Zero();
-  M.diagonal() = consistent.diagonal() * (consistent.sum() / consistent.trace());
+  if (diagonal > 0) M.diagonal() = consistent.diagonal() * (total / diagonal);
   return M;
 }
 

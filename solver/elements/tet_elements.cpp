@@ -216,7 +216,7 @@ void TetElements<nodes>::add_mass(bool lumped, ScalarMatrix& mass) const {
       int ids[nodes];
       for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
       ElementMass<nodes> M = consistent_mass<nodes>(points_, ids, densities_[static_cast<std::size_t>(batch.region)]);
-      if (lumped && M.trace() > 0) M = lumped_mass<nodes>(M);
+      if (lumped) M = lumped_mass<nodes>(M);
       for (int k = 0; k < nodes * nodes; ++k)
         mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
     }

@@ -63,7 +63,11 @@ void run_static(Run& run) {
     const double start = run.now.time;
     for (int part = 1; part <= parts; ++part) {
       const double from = (part - 1.0) / parts, to = static_cast<double>(part) / parts;
-      if (advance(run, path, from, to).stop != Stop::converged) return;
+      const Vector last_good = run.now.u;
+      if (advance(run, path, from, to).stop != Stop::converged) {
+        run.now.u = last_good;
+        return;
+      }
       run.newton.prepare(run.now.u, path.loads(to));
       run.newton.rest();
       run.now.time = start + to * step.dt * step.count;
