@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that hold polygons and nothing else: .stl, .off, .obj, .ply. CGAL reads them, in double precision.
+// Files that hold polygons and nothing else: .stl, .off, .obj, .ply. CGAL reads all but the last, in double precision.
 #include <CGAL/IO/OBJ.h>
 #include <CGAL/IO/OFF.h>
-#include <CGAL/IO/PLY.h>
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
@@ -19,6 +18,7 @@
 #include <sstream>
 
 #include "operators/formats/formats.hpp"
+#include "operators/formats/ply_reader.hpp"
 #include "operators/vtk_convert.hpp"
 #include "operators/vtk_guard.hpp"
 
@@ -68,7 +68,10 @@ bool parse(const std::string& extension, const std::string& bytes, Polygons& sou
   }
   if (extension == ".off") return CGAL::IO::read_OFF(in, soup.points, soup.faces, quiet);
   if (extension == ".obj") return CGAL::IO::read_OBJ(in, soup.points, soup.faces, quiet);
-  return CGAL::IO::read_PLY(in, soup.points, soup.faces, quiet);
+  const PlyPolygons read = read_ply(bytes);
+  for (const Vec3& p : read.points) soup.points.emplace_back(p[0], p[1], p[2]);
+  for (const auto& face : read.faces) soup.faces.emplace_back(face.begin(), face.end());
+  return true;
 }
 
 Surface read(const std::string& extension, const std::filesystem::path& path) {
