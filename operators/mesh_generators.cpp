@@ -39,6 +39,13 @@ class Grid {
         }
   }
 
+  /// Numbers the points in the order of the lattice, so that every cell is cut around the same diagonal.
+  void number(int nx, int ny, int nz, const Naming& naming) {
+    for (int k = 0; k <= nz; ++k)
+      for (int j = 0; j <= ny; ++j)
+        for (int i = 0; i <= nx; ++i) id(naming(i, j, k));
+  }
+
   Mesh tetrahedra() const {
     Mesh mesh;
     mesh.points = Eigen::Map<const Points>(coordinates_.data(), static_cast<Eigen::Index>(ids_.size()), 3);
@@ -133,7 +140,9 @@ Mesh generate(const Box& box) {
                 blend(box.origin.y(), box.origin.y() + box.size.y(), n[1], box.divisions[1]),
                 blend(box.origin.z(), box.origin.z() + box.size.z(), n[2], box.divisions[2]));
   });
-  grid.add(nx, ny, nz, [](int i, int j, int k) { return Name{i, j, k, 0}; });
+  const auto naming = [](int i, int j, int k) { return Name{i, j, k, 0}; };
+  grid.number(nx, ny, nz, naming);
+  grid.add(nx, ny, nz, naming);
   return grid.tetrahedra();
 }
 
