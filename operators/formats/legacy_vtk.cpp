@@ -56,7 +56,7 @@ Value read(const std::filesystem::path& path, Type wanted) {
   if (kind == VTK_UNSTRUCTURED_GRID && !image)
     return as_wanted(to_mesh(*read_all<vtkUnstructuredGridReader>(path)->GetOutput()), wanted);
   if (kind == VTK_STRUCTURED_POINTS || kind == VTK_POLY_DATA || kind == VTK_UNSTRUCTURED_GRID)
-    throw Error(fmt::format("holds {}, not a {}",
+    throw Error(fmt::format("holds {}, which is no {}",
                             kind == VTK_STRUCTURED_POINTS ? "an image"
                             : kind == VTK_POLY_DATA       ? "polygons"
                                                           : "a grid",

@@ -102,7 +102,7 @@ TEST(ImageFiles, ANaNIsNeverWritten) {
 TEST(ImageFiles, AMeshFileIsNoImage) {
   const test::Folder folder("msml_no_image");
   test::put_bytes(folder / "p.vtk", "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 0 float\n");
-  EXPECT_EQ(test::read_error(folder / "p.vtk", Type::image), "p.vtk: holds polygons, not a Image");
+  EXPECT_EQ(test::read_error(folder / "p.vtk", Type::image), "p.vtk: holds polygons, which is no Image");
 }
 
 class DamagedImageFile : public testing::TestWithParam<std::string> {};
