@@ -63,9 +63,10 @@ Scene pressed_beam(const Language& language) {
       region(language, "liverMaterial", points_in(scene.mesh, {-0.1, -0.1, -0.1}, {0.04, 0.07, 0.21}), 3000, 0.49)};
   scene.constraints = {
       condition(language, "fixedConstraint", {{"indices", points_in(scene.mesh, left_low, left_high)}}),
-      condition(
-          language, "surfacePressure",
-          {{"indices", triangles_in(scene.mesh, right_low, right_high)}, {"pressure", std::vector<double>{-50}}})};
+      condition(language, "surfacePressure",
+                {{"indices", triangles_in(scene.mesh, right_low, right_high)},
+                 {"pressure", std::vector<double>{-50}},
+                 {"follower", false}})};
   return scene;
 }
 
