@@ -30,7 +30,8 @@ std::string wrapped(const std::string& text, std::size_t indent, std::size_t wid
 
 std::string fallback_text(const Slot& slot) {
   if (type(slot.fallback) == Type::nothing) return {};
-  if (const auto* list = std::get_if<std::vector<double>>(&slot.fallback)) return fmt::format("{}", fmt::join(*list, " "));
+  if (const auto* list = std::get_if<std::vector<double>>(&slot.fallback))
+    return fmt::format("{}", fmt::join(*list, " "));
   if (const auto* list = std::get_if<std::vector<Integer>>(&slot.fallback))
     return fmt::format("{}", fmt::join(*list, " "));
   const std::string text = summary(slot.fallback);
@@ -46,9 +47,12 @@ std::string slot_text(const Slot& slot) {
   if (!slot.counts.empty()) facts += fmt::format(", {} values", fmt::join(slot.counts, " or "));
   if (slot.multiple_of > 1) facts += fmt::format(", a multiple of {} values", slot.multiple_of);
   const std::string fallback = fallback_text(slot);
-  if (!fallback.empty()) facts += ", default " + fallback;
-  else if (slot.required) facts += ", required";
-  else if (slot.role != Role::output) facts += ", optional";
+  if (!fallback.empty())
+    facts += ", default " + fallback;
+  else if (slot.required)
+    facts += ", required";
+  else if (slot.role != Role::output)
+    facts += ", optional";
   return fmt::format("  {}  ({})\n", slot.name, facts) + wrapped(slot.doc, 6);
 }
 
@@ -65,14 +69,16 @@ std::string rules_text(const Registry& registry, const Description& description)
     std::vector<std::string> tags;
     for (const Description* child : registry.of_category(rule.category)) tags.push_back(child->tag());
     if (tags.empty()) continue;
-    text += wrapped(fmt::format("{}{}: {}", rule.least > 0 ? "needs" : "may hold",
-                                rule.most == 1 ? " one of" : "", fmt::join(tags, ", ")), 2);
+    text += wrapped(fmt::format("{}{}: {}", rule.least > 0 ? "needs" : "may hold", rule.most == 1 ? " one of" : "",
+                                fmt::join(tags, ", ")),
+                    2);
   }
   return text;
 }
 
 std::string description_text(const Registry& registry, const Description& description) {
-  std::string text = fmt::format("{} ({})\n", description.tag(), description.category()) + wrapped(description.doc(), 2);
+  std::string text =
+      fmt::format("{} ({})\n", description.tag(), description.category()) + wrapped(description.doc(), 2);
   if (!description.unavailable().empty()) text += "  Not available yet: " + description.unavailable() + "\n";
   if (!description.source().empty()) text += wrapped("Source: " + description.source(), 2);
   const std::string in = slots_text(description, false), out = slots_text(description, true);
@@ -103,7 +109,8 @@ std::string help_text(const Registry& registry, const std::string& tag) {
       if (description->tag() != tag) continue;
       text += (text.empty() ? "" : "\n") + description_text(registry, *description);
     }
-  if (text.empty()) throw Error(fmt::format("no tag is called {}{}; `msml list` shows all", tag, did_you_mean(tag, tags)));
+  if (text.empty())
+    throw Error(fmt::format("no tag is called {}{}; `msml list` shows all", tag, did_you_mean(tag, tags)));
   return text;
 }
 
@@ -111,8 +118,11 @@ std::string list_text(const Registry& registry, const std::string& wanted) {
   const auto all = by_category(registry);
   std::vector<std::string> categories;
   for (const auto& [category, descriptions] : all) categories.push_back(category);
+  // "materials" means the laws, not the tag <material> around them.
   std::string singular = wanted;
-  if (!all.contains(singular) && singular.ends_with('s')) singular.pop_back();
+  for (const std::string& ending : {std::string("s"), std::string("es")})
+    if (wanted.ends_with(ending) && all.contains(wanted.substr(0, wanted.size() - ending.size())))
+      singular = wanted.substr(0, wanted.size() - ending.size());
   if (!wanted.empty() && !all.contains(singular))
     throw Error(fmt::format("no category is called {}{}; there are {}", wanted, did_you_mean(wanted, categories),
                             fmt::join(categories, ", ")));

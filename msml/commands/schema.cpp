@@ -13,17 +13,23 @@ namespace {
 std::string escaped(const std::string& text) {
   std::string out;
   for (const char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
+    if (c == '&')
+      out += "&amp;";
+    else if (c == '<')
+      out += "&lt;";
+    else if (c == '>')
+      out += "&gt;";
+    else if (c == '"')
+      out += "&quot;";
+    else
+      out += c;
   }
   return out;
 }
 
 std::string documentation(const std::string& text, const std::string& indent) {
-  return fmt::format("{0}<xs:annotation><xs:documentation>{1}</xs:documentation></xs:annotation>\n", indent, escaped(text));
+  return fmt::format("{0}<xs:annotation><xs:documentation>{1}</xs:documentation></xs:annotation>\n", indent,
+                     escaped(text));
 }
 
 std::string type_name(const Description& description) { return description.category() + "." + description.tag(); }
@@ -31,15 +37,19 @@ std::string type_name(const Description& description) { return description.categ
 /// The restriction of a number to its range, or "" where it is not bounded.
 std::string range_facets(const Range& range) {
   std::string text;
-  if (std::isfinite(range.low)) text += fmt::format("<xs:min{}clusive value=\"{}\"/>", range.low_open ? "Ex" : "In", range.low);
-  if (std::isfinite(range.high)) text += fmt::format("<xs:max{}clusive value=\"{}\"/>", range.high_open ? "Ex" : "In", range.high);
+  if (std::isfinite(range.low))
+    text += fmt::format("<xs:min{}clusive value=\"{}\"/>", range.low_open ? "Ex" : "In", range.low);
+  if (std::isfinite(range.high))
+    text += fmt::format("<xs:max{}clusive value=\"{}\"/>", range.high_open ? "Ex" : "In", range.high);
   return text;
 }
 
 /// An anonymous type: the restriction of `base`, or a reference.
 std::string union_with_reference(const std::string& base, const std::string& facets) {
-  return fmt::format("        <xs:simpleType><xs:union memberTypes=\"reference\"><xs:simpleType><xs:restriction "
-                     "base=\"{}\">{}</xs:restriction></xs:simpleType></xs:union></xs:simpleType>\n", base, facets);
+  return fmt::format(
+      "        <xs:simpleType><xs:union memberTypes=\"reference\"><xs:simpleType><xs:restriction "
+      "base=\"{}\">{}</xs:restriction></xs:simpleType></xs:union></xs:simpleType>\n",
+      base, facets);
 }
 
 std::string attribute(const Slot& slot, bool verbatim) {
@@ -49,7 +59,8 @@ std::string attribute(const Slot& slot, bool verbatim) {
   const std::string tail = "      </xs:attribute>\n";
   if (slot.role == Role::parameter && !slot.choices.empty() && !verbatim) {
     std::string facets;
-    for (const std::string& choice : slot.choices) facets += fmt::format("<xs:enumeration value=\"{}\"/>", escaped(choice));
+    for (const std::string& choice : slot.choices)
+      facets += fmt::format("<xs:enumeration value=\"{}\"/>", escaped(choice));
     return head + ">\n" + doc + union_with_reference("xs:string", facets) + tail;
   }
   if (slot.role == Role::parameter && slot.type == Type::number)
@@ -67,7 +78,8 @@ std::string legacy_attributes(const Description& description) {
   if (description.tag() == "var") names.insert({"type", "format"});
   for (const std::string& name : names)
     if (description.find(name) < 0) text += fmt::format("      <xs:attribute name=\"{}\" type=\"xs:string\"/>\n", name);
-  const char* any = description.tag() == "solver" ? "##any" : "##other";
+  const bool open = description.tag() == "solver" || !description.unavailable().empty();
+  const char* any = open ? "##any" : "##other";
   return text + fmt::format("      <xs:anyAttribute namespace=\"{}\" processContents=\"skip\"/>\n", any);
 }
 
@@ -95,12 +107,12 @@ constexpr const char* head = R"(<?xml version="1.0" encoding="UTF-8"?>
            targetNamespace="http://sfb125.de/msml" elementFormDefault="unqualified">
   <xs:element name="msml" type="msml.msml"/>
   <xs:simpleType name="reference">
-    <xs:restriction base="xs:string"><xs:pattern value="\s*\$\{[^}]*\}\s*"/></xs:restriction>
+    <xs:restriction base="xs:string"><xs:pattern value="\s*[$]\{[^}]*\}\s*"/></xs:restriction>
   </xs:simpleType>
   <xs:simpleType name="boolean">
     <xs:union memberTypes="reference">
       <xs:simpleType><xs:restriction base="xs:string">
-        <xs:pattern value="[Tt]rue|[Ff]alse|1|0|[Yy]es|[Nn]o|[Oo]n|[Oo]ff"/>
+        <xs:pattern value="\s*([Tt][Rr][Uu][Ee]|[Ff][Aa][Ll][Ss][Ee]|1|0|[Yy][Ee][Ss]|[Nn][Oo]|[Oo][Nn]|[Oo][Ff][Ff])\s*"/>
       </xs:restriction></xs:simpleType>
     </xs:union>
   </xs:simpleType>

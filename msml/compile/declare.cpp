@@ -139,6 +139,29 @@ void enter_targets(Work& work, const Task& task) {
   }
 }
 
+/// True if the pattern matches what a task that is still to be split will write.
+bool will_write(Work& work, const Task& task, const std::string& pattern) {
+  for (const Attribute& attribute : task.tag->element->attributes) {
+    const int slot = task.tag->description->find(attribute.name);
+    if (slot < 0 || task.tag->description->slots()[static_cast<std::size_t>(slot)].role != Role::target) continue;
+    const auto text = plain_text(work, attribute.value);
+    if (text && matches(pattern, trimmed(*text))) return true;
+  }
+  return false;
+}
+
+/// The first task whose pattern waits for no other's targets; the first of all where they wait for each other.
+std::vector<Task>::iterator next_to_split(Work& work, std::vector<Task>& starred) {
+  const auto waits = [&](const Task& task) {
+    std::string pattern;
+    star_attribute(work, task, pattern);
+    return std::any_of(starred.begin(), starred.end(),
+                       [&](const Task& other) { return other.tag != task.tag && will_write(work, other, pattern); });
+  };
+  const auto next = std::find_if_not(starred.begin(), starred.end(), waits);
+  return next == starred.end() ? starred.begin() : next;
+}
+
 }  // namespace
 
 bool declare(Work& work, const std::string& name, Named named) {
@@ -191,11 +214,13 @@ void declare_targets(Work& work) {
     (star_attribute(work, task, pattern) ? starred : plain).push_back(std::move(task));
   }
   for (const Task& task : plain) enter_targets(work, task);
-  for (Task& task : starred) {
+  while (!starred.empty()) {
+    const auto next = next_to_split(work, starred);
     std::string pattern;
-    const std::string attribute = star_attribute(work, task, pattern)->name;
+    const std::string attribute = star_attribute(work, *next, pattern)->name;
     const std::size_t first = split.size();
-    split_task(work, std::move(task), attribute, pattern, split);
+    split_task(work, *next, attribute, pattern, split);
+    starred.erase(next);
     for (std::size_t i = first; i < split.size(); ++i) enter_targets(work, split[i]);
   }
   work.tasks = std::move(plain);

@@ -58,7 +58,8 @@ void check_output(const Value& value) {
   if (const auto* image = std::get_if<ImagePtr>(&value)) (*image)->check();
   if (const auto* field = std::get_if<FieldPtr>(&value)) check_finite((*field)->values, "the field " + (*field)->name);
   if (const auto* list = std::get_if<std::vector<double>>(&value)) check_finite(*list, "the result");
-  if (const auto* number = std::get_if<double>(&value)) check_finite({*number}, "the result");
+  if (const auto* number = std::get_if<double>(&value); number && !std::isfinite(*number))
+    throw Error("the result is not a finite number");
 }
 
 std::string as_text(const Value& value) {

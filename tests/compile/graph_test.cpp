@@ -62,8 +62,9 @@ TEST(Files, FileIsReadOncePerTypeAndLookedUpBesideTheScene) {
 }
 
 TEST(Files, NameOfAnotherTasksTargetIsAnEdge) {
-  const Compilation result = compiled(workflow("<Fill id=\"f\" surfaceMesh=\"./skin.tri\" cellSize=\"1\"/>"
-                                               "<MakeSurface id=\"s\" file=\"skin.tri\"/>"));
+  const Compilation result =
+      compiled(workflow("<Fill id=\"f\" surfaceMesh=\"./skin.tri\" cellSize=\"1\"/>"
+                        "<MakeSurface id=\"s\" file=\"skin.tri\"/>"));
   ASSERT_EQ(tiny::lines(result.faults), "");
   EXPECT_EQ(order_of(result), (std::vector<std::string>{"s", "f"}));
 }
@@ -86,7 +87,8 @@ TEST(Files, OutputMayNotOverwriteAnInput) {
   folder.add("b.txt");
   const CompileOptions below{.output_folder = folder.path() / "out"};
   EXPECT_EQ(task_faults("<Skin id=\"s\" mesh=\"a.tet\"/>\n<Fill surfaceMesh=\"${s}\" cellSize=\"1\"\n"
-                        " meshFilename=\"../a.tet\"/>", below, folder.path()),
+                        " meshFilename=\"../a.tet\"/>",
+                        below, folder.path()),
             "s.xml:4: ../a.tet would overwrite the input of the same name; choose another output folder with -o");
   EXPECT_EQ(task_faults("<Copy from=\"b.txt\" to=\"../b.txt\"/>", below, folder.path()),
             "s.xml:2: ../b.txt would overwrite the input of the same name; choose another output folder with -o");
@@ -128,15 +130,29 @@ TEST(Cycles, AreReportedBesideOtherFaults) {
 TEST(Patterns, TaskRunsOncePerFileInNaturalOrder) {
   const Folder folder;
   for (const char* name : {"s10.tri", "s2.tri", "s1.tri", "t.tri", "s3.img"}) folder.add(name);
-  const Compilation result =
-      compiled(workflow("<Fill id=\"f\" surfaceMesh=\"s*.tri\" meshFilename=\"m_*.tet\" cellSize=\"1\"/>"), {},
-               folder.path());
+  const Compilation result = compiled(
+      workflow("<Fill id=\"f\" surfaceMesh=\"s*.tri\" meshFilename=\"m_*.tet\" cellSize=\"1\"/>"), {}, folder.path());
   ASSERT_EQ(tiny::lines(result.faults), "");
   std::vector<std::string> ids, targets;
   for (const Node& node : result.graph.nodes)
     if (node.kind == NodeKind::task) ids.push_back(node.id), targets.push_back(node.targets.at(0).file.string());
   EXPECT_EQ(ids, (std::vector<std::string>{"f[1]", "f[2]", "f[10]"}));
   EXPECT_EQ(targets, (std::vector<std::string>{"m_1.tet", "m_2.tet", "m_10.tet"}));
+}
+
+TEST(Patterns, OfTasksInAChainMayStandInAnyOrder) {
+  const Folder folder;
+  folder.add("s1.tri");
+  folder.add("s2.tri");
+  const Compilation result =
+      compiled(workflow("<Skin id=\"k\" mesh=\"*.fine.tet\" file=\"*.out.tri\"/>"
+                        "<Fill id=\"f\" surfaceMesh=\"s*.tri\" meshFilename=\"m*.fine.tet\" cellSize=\"1\"/>"),
+               {}, folder.path());
+  ASSERT_EQ(tiny::lines(result.faults), "");
+  std::vector<std::string> files;
+  for (const Node& node : result.graph.nodes)
+    if (node.op && node.op->tag() == "Skin") files.push_back(node.targets.at(0).file.string());
+  EXPECT_EQ(files, (std::vector<std::string>{"m1.out.tri", "m2.out.tri"}));
 }
 
 TEST(Patterns, WithoutAMatchAreAFault) {
@@ -150,9 +166,10 @@ TEST(Patterns, TargetWithoutStarIsOneFileForAll) {
   const Folder folder;
   folder.add("s1.tri");
   folder.add("s2.tri");
-  EXPECT_EQ(task_faults("<Fill surfaceMesh=\"s*.tri\"\n meshFilename=\"m.tet\" cellSize=\"1\"/>", {}, folder.path()),
-            "s.xml:3: meshFilename = m.tet is one file, but the task runs once per file that matches surfaceMesh; put a "
-            "* into it");
+  EXPECT_EQ(
+      task_faults("<Fill surfaceMesh=\"s*.tri\"\n meshFilename=\"m.tet\" cellSize=\"1\"/>", {}, folder.path()),
+      "s.xml:3: meshFilename = m.tet is one file, but the task runs once per file that matches surfaceMesh; put a "
+      "* into it");
 }
 
 TEST(Patterns, TargetAloneIsAFault) {
@@ -172,9 +189,10 @@ TEST(Patterns, TaskPerFileWhereOneValueIsNeededIsAFault) {
 }
 
 TEST(Patterns, OfOtherTasksTargetsGatherTheirValues) {
-  const Compilation result = compiled(workflow("<Sum id=\"sum\" image=\"a*.img\"/><MakeSurface id=\"s\"/>"
-                                               "<Voxelize id=\"v10\" surface=\"${s}\" imageFile=\"a10.img\"/>"
-                                               "<Voxelize id=\"v9\" surface=\"${s}\" imageFile=\"a9.img\"/>"));
+  const Compilation result =
+      compiled(workflow("<Sum id=\"sum\" image=\"a*.img\"/><MakeSurface id=\"s\"/>"
+                        "<Voxelize id=\"v10\" surface=\"${s}\" imageFile=\"a10.img\"/>"
+                        "<Voxelize id=\"v9\" surface=\"${s}\" imageFile=\"a9.img\"/>"));
   ASSERT_EQ(tiny::lines(result.faults), "");
   const auto edges = std::get<std::vector<Edge>>(result.graph.nodes.at(0).args.sources.at(0));
   ASSERT_EQ(edges.size(), 2u);
@@ -183,8 +201,8 @@ TEST(Patterns, OfOtherTasksTargetsGatherTheirValues) {
 }
 
 TEST(Nested, TasksFeedUnsetInputsInOrder) {
-  const Compilation result = compiled(workflow(
-      "<Skin id=\"outer\"><Fill id=\"middle\" cellSize=\"1\"><MakeSurface id=\"inner\"/></Fill></Skin>"));
+  const Compilation result = compiled(
+      workflow("<Skin id=\"outer\"><Fill id=\"middle\" cellSize=\"1\"><MakeSurface id=\"inner\"/></Fill></Skin>"));
   ASSERT_EQ(tiny::lines(result.faults), "");
   EXPECT_EQ(order_of(result), (std::vector<std::string>{"inner", "middle", "outer"}));
 }
@@ -211,7 +229,8 @@ TEST(Steps, UnknownStepIsAWarningThatListsThem) {
 
 TEST(Steps, MayBeNamedWithOrWithoutBraces) {
   for (const char* name : {"push", "${push}", " ${ push } "}) {
-    const Compilation result = compiled(object({.constraint = "<hold indices=\"0\" forStep=\"" + std::string(name) + "\"/>"}));
+    const Compilation result =
+        compiled(object({.constraint = "<hold indices=\"0\" forStep=\"" + std::string(name) + "\"/>"}));
     EXPECT_EQ(tiny::lines(result.faults) + tiny::lines(result.warnings), "") << name;
   }
 }
@@ -249,8 +268,9 @@ TEST(Objects, GetADefaultStepAndSolver) {
 
 TEST(Objects, OfOneNameAreAFault) {
   std::string two = object({});
-  two.insert(two.find("</scene>"), "<object id=\"body\"><mesh><linearTet mesh=\"${m}\"/></mesh><material><region "
-                                   "indices=\"${r}\"><softMaterial youngModulus=\"1\"/></region></material></object>");
+  two.insert(two.find("</scene>"),
+             "<object id=\"body\"><mesh><linearTet mesh=\"${m}\"/></mesh><material><region "
+             "indices=\"${r}\"><softMaterial youngModulus=\"1\"/></region></material></object>");
   EXPECT_EQ(faults_of(two), "s.xml:13: two objects are called body: the other one is at line 2");
 }
 
@@ -265,17 +285,18 @@ TEST(Objects, OutputWithAPatternTargetIsTakenStateByState) {
 }
 
 TEST(Faults, AllOfASceneAreReportedSortedByLine) {
-  EXPECT_EQ(task_faults("<Skin mesh=\"${nobody}\"/>\n<MakeSurface radius=\"0\" angle=\"99\"/>\n<Banana/>\n"
-                        "<MakeSurface>stray</MakeSurface>\n<Fill surfaceMesh=\"no.tri\" size=\"1\"/>"),
-            "s.xml:2: ${nobody} names no variable, task or output\n"
-            "s.xml:3: radius = 0 is not > 0\n"
-            "s.xml:3: angle = 99 is not in [0, 30]\n"
-            "s.xml:4: unknown tag Banana inside workflow; known there: MakeSurface, Fill, Skin, Pick, Paint, Voxelize, Sum, "
-            "Copy, Measure, Later\n"
-            "s.xml:5: text 'stray' inside MakeSurface has no meaning; values stand in attributes\n"
-            "s.xml:6: surfaceMesh = no.tri names no file beside the scene and no task's target\n"
-            "s.xml:6: Fill has no attribute size; it has surfaceMesh, cellSize, meshFilename\n"
-            "s.xml:6: Fill needs the attribute cellSize: size of the cells");
+  EXPECT_EQ(
+      task_faults("<Skin mesh=\"${nobody}\"/>\n<MakeSurface radius=\"0\" angle=\"99\"/>\n<Banana/>\n"
+                  "<MakeSurface>stray</MakeSurface>\n<Fill surfaceMesh=\"no.tri\" size=\"1\"/>"),
+      "s.xml:2: ${nobody} names no variable, task or output\n"
+      "s.xml:3: radius = 0 is not > 0\n"
+      "s.xml:3: angle = 99 is not in [0, 30]\n"
+      "s.xml:4: unknown tag Banana inside workflow; known there: MakeSurface, Fill, Skin, Pick, Paint, Voxelize, Sum, "
+      "Copy, Measure, Later\n"
+      "s.xml:5: text 'stray' inside MakeSurface has no meaning; values stand in attributes\n"
+      "s.xml:6: surfaceMesh = no.tri names no file beside the scene and no task's target\n"
+      "s.xml:6: Fill has no attribute size; it has surfaceMesh, cellSize, meshFilename\n"
+      "s.xml:6: Fill needs the attribute cellSize: size of the cells");
 }
 
 TEST(Order, OfThousandTasksFollowsTheEdges) {
@@ -304,8 +325,9 @@ TEST(Order, OfHundredThousandTasksInAChainNeedsNoDeepStack) {
 }
 
 TEST(Picture, NamesNodesEdgesAndFilesAndEscapesQuotes) {
-  const Compilation result = compiled(workflow("<MakeSurface id=\"a&quot;b\" file=\"a.tri\"/><MakeSurface id=\"s\"/>"
-                                               "<Fill id=\"f\" surfaceMesh=\"${s}\" cellSize=\"1\"/>"));
+  const Compilation result =
+      compiled(workflow("<MakeSurface id=\"a&quot;b\" file=\"a.tri\"/><MakeSurface id=\"s\"/>"
+                        "<Fill id=\"f\" surfaceMesh=\"${s}\" cellSize=\"1\"/>"));
   const std::string dot = to_dot(result.graph, {true, true, false});
   EXPECT_NE(dot.find("n1 -> n2 [label=\"surfaceMesh\\nSurface\"]"), std::string::npos) << dot;
   EXPECT_NE(dot.find("\"file a.tri\""), std::string::npos);

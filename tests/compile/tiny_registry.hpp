@@ -190,6 +190,7 @@ inline Operator simulate() {
   for (const char* category : {"object", "solver", "simulation"}) op.allow({category, 1, 1});
   op.run([](Context& c) {
     int slot = 0;
+    std::filesystem::create_directories(c.output_folder());
     for (const Record& child : c.args().children)
       for (const Record* output : child.of_category("outputs"))
         for (const Record& request : output->children) {
