@@ -90,6 +90,8 @@ def actor_of(skin, args):
     actor = vtk.vtkActor()
     actor.SetMapper(mapper)
     actor.GetProperty().SetColor(0.85, 0.72, 0.6)
+    actor.GetProperty().SetAmbient(0.25)
+    actor.GetProperty().SetDiffuse(0.8)
     if args.edges:
         actor.GetProperty().EdgeVisibilityOn()
         actor.GetProperty().SetEdgeColor(0.2, 0.2, 0.2)
@@ -114,14 +116,18 @@ def legend(table, title):
     bar.SetTitle(title)
     bar.SetNumberOfLabels(5)
     bar.SetLabelFormat("%.3g")
-    bar.SetPosition(0.86, 0.12)
-    bar.SetWidth(0.1)
-    bar.SetHeight(0.76)
+    bar.SetPosition(0.84, 0.1)
+    bar.SetWidth(0.15)
+    bar.SetHeight(0.8)
+    bar.SetBarRatio(0.2)
+    bar.SetVerticalTitleSeparation(14)
+    bar.UnconstrainedFontSizeOn()
     for text in (bar.GetTitleTextProperty(), bar.GetLabelTextProperty()):
         text.SetColor(0.1, 0.1, 0.1)
-        text.SetFontSize(14)
+        text.SetFontSize(15)
         text.ShadowOff()
         text.ItalicOff()
+        text.BoldOff()
     return bar
 
 
@@ -166,7 +172,7 @@ def main():
     parser.add_argument("--edges", action="store_true")
     parser.add_argument("--outline", action="store_true", help="show the undeformed body too")
     parser.add_argument("--detail", type=int, default=1, help="subdivisions of a quadratic face")
-    parser.add_argument("--zoom", type=float, default=1.25)
+    parser.add_argument("--zoom", type=float, default=1.0)
     parser.add_argument("--size", type=int, nargs=2, default=(800, 520))
     args = parser.parse_args()
 
