@@ -33,6 +33,7 @@ Equations::Equations(const Model& model)
   for (const Region& region : model.regions)
     if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
+  for (const LoadSet& set : loads_) has_followers_ = has_followers_ || !set.followers.empty();
 }
 
 double Equations::total_mass() const {
@@ -41,17 +42,16 @@ double Equations::total_mass() const {
   return sum;
 }
 
-void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces,
-                         BlockMatrix* tangent) const {
+void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent,
+                         BlockMatrix* followers) const {
   forces.internal = Vector::Zero(size());
   forces.external = Vector::Zero(size());
   if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
-  // The stiffness of a follower pressure may have any sign: a definite tangent goes without it.
-  BlockMatrix* with_followers = want == Want::definite_tangent ? nullptr : tangent;
+  if (followers) followers->set_zero();
   for (const auto& [set, scale] : loads) {
     forces.external += scale * set->dead;
-    add_followers(*set, scale, X_, u, forces.external, with_followers);
+    add_followers(*set, scale, X_, u, forces.external, followers);
   }
 }
 

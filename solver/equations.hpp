@@ -47,8 +47,11 @@ class Equations {
   double total_mass() const;
   bool small_strain() const { return small_strain_; }  ///< true if every region's law is
 
-  /// Internal and external forces at u; if `tangent` is given, it becomes the derivative of internal - external.
-  void evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent) const;
+  /// Internal and external forces at u; if given, `tangent` becomes the derivative of the internal forces (symmetric),
+  /// `followers` that of minus the external ones (unsymmetric, zero without follower pressure).
+  void evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent,
+                BlockMatrix* followers = nullptr) const;
+  bool has_followers() const { return has_followers_; }  ///< true if a step has a follower pressure
   /// Inertia and Rayleigh damping alpha M v + beta K0 v; `K0` may be null where beta = 0.
   void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0, Forces& forces) const;
 
@@ -58,7 +61,7 @@ class Equations {
   Vector X_;
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;
-  bool small_strain_ = true;
+  bool small_strain_ = true, has_followers_ = false;
 };
 
 }  // namespace msml::fe

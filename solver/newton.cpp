@@ -6,6 +6,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "solver/linear/gmres.hpp"
+
 namespace msml::fe {
 namespace {
 
@@ -52,18 +54,21 @@ Newton::Newton(const Model& model, const Equations& equations)
       linear_(make_linear_system(model.settings, equations.size())),
       tangent_(equations.elements().pattern()),
       effective_(equations.elements().pattern()),
-      want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {}
+      want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {
+  if (equations.has_followers()) followers_ = std::make_unique<BlockMatrix>(equations.elements().pattern());
+}
 
 void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent) {
   const Stopwatch watch(seconds_assembly_);
-  equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr);
+  equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr,
+                      with_tangent ? followers_.get() : nullptr);
   equations_.evaluate_motion(increment.motion.velocity_at(u), increment.motion.acceleration_at(u),
                              increment.damping_matrix, forces_);
 }
 
 void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   const Stopwatch watch(seconds_assembly_);
-  equations_.evaluate(u, loads, want_, forces_, &tangent_);
+  equations_.evaluate(u, loads, want_, forces_, &tangent_, followers_.get());
   tangent_current_ = true;
 }
 
@@ -104,6 +109,18 @@ LinearStatus Newton::factor(const Increment& increment) {
   return linear_->factor(effective_, increment.fixed);
 }
 
+LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
+  const double tolerance = model_.settings.linear_tolerance;
+  if (!followers_) return linear_->solve(right, tolerance, step);
+  Vector extra;
+  const LinearMap whole = [&](const Vector& x, Vector& y) {
+    multiply(effective_, x, y);
+    multiply(*followers_, x, extra);
+    y += extra;
+  };
+  return solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
+}
+
 LinearStatus Newton::direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                                Vector& step) {
   for (const bool definite : {false, true}) {
@@ -118,9 +135,13 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
       if (jump.size() > 0) {
         multiply(tangent_, jump, product);
         right -= product;
+        if (followers_) {
+          multiply(*followers_, jump, product);
+          right -= product;
+        }
       }
       ++solves_;
-      status = linear_->solve(right, model_.settings.linear_tolerance, step);
+      status = solve(increment, right, step);
     }
     // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
     if (!definite) indefinite_ = status == LinearStatus::not_positive_definite;
@@ -143,8 +164,10 @@ double Newton::line_search(const Increment& increment, const Vector& direction, 
       step *= 0.25;
       continue;
     }
-    // Either the residual shrinks, or the minimum along the direction is not overshot by much.
-    if (!model_.settings.line_search || new_norm <= norm || new_slope >= -0.8 * std::abs(slope)) return step;
+    // Either the residual shrinks, or the minimum along the direction is not overshot by much. A follower pressure has
+    // no energy to search, and in slender bodies the residual grows before it falls.
+    if (!model_.settings.line_search || followers_ || new_norm <= norm || new_slope >= -0.8 * std::abs(slope))
+      return step;
     step *= std::clamp(slope / (slope - new_slope), 0.1, 0.6);
   }
   return forces_.found.finite ? step : 0;

@@ -60,6 +60,7 @@ class Newton {
 
  private:
   LinearStatus factor(const Increment& increment);
+  LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);
   Vector residual(const Increment& increment) const;
@@ -74,6 +75,7 @@ class Newton {
   const Equations& equations_;
   std::unique_ptr<LinearSystem> linear_;
   BlockMatrix tangent_, effective_;
+  std::unique_ptr<BlockMatrix> followers_;  ///< stiffness of the follower pressure; null without
   Forces forces_;
   Want want_;
   bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from

@@ -90,7 +90,7 @@ void add_face_load(const Model& model, const FaceLoad& load, const Numbering& nu
   }
 }
 
-/// -df_a/du_b = p int N_a ([x,r]x N_b,s - [x,s]x N_b,r); the symmetric part is added.
+/// -df_a/du_b = p int N_a ([x,r]x N_b,s - [x,s]x N_b,r).
 template <int nodes>
 void add_follower(const FollowerFace& face, double pressure, const Vector& X, const Vector& u, Vector& force,
                   BlockMatrix* matrix) {
@@ -100,12 +100,9 @@ void add_follower(const FollowerFace& face, double pressure, const Vector& X, co
     for (int a = 0; a < nodes; ++a) force.segment<3>(3 * face.nodes[a]) += point.N[a] * push;
     if (!matrix) return;
     const Mat3 R = cross(point.r), S = cross(point.s);
-    const auto half = [&](int a, int b) -> Mat3 {
-      return 0.5 * pressure * point.weight * point.N[a] * (R * point.dN[b][1] - S * point.dN[b][0]);
-    };
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b) {
-        const Mat3 block = half(a, b) + half(b, a).transpose();
+        const Mat3 block = pressure * point.weight * point.N[a] * (R * point.dN[b][1] - S * point.dN[b][0]);
         double* out =
             matrix->values.data() + 9 * static_cast<std::size_t>(matrix->pattern->find(face.nodes[a], face.nodes[b]));
         for (int k = 0; k < 9; ++k) out[k] += block(k / 3, k % 3);
