@@ -98,6 +98,14 @@ TEST(References, VariableBombIsRefusedWithoutExpanding) {
       "itself, or grows without bound");
 }
 
+TEST(References, VariableBombOfEmptyTextsIsRefused) {
+  std::string variables = "<var name=\"v0\" value=\"\"/>";
+  for (int i = 1; i <= 30; ++i)
+    variables += "<var name=\"v" + std::to_string(i) + "\" value=\"${v" + std::to_string(i - 1) + "}${v" +
+                 std::to_string(i - 1) + "}\"/>";
+  EXPECT_NE(faults_of(with_variables(variables, "<MakeSurface label=\"${v30}\"/>")), "");
+}
+
 TEST(References, WrongTypeNamesBothEndsAndWhatLiesBetween) {
   EXPECT_EQ(task_faults(std::string(surface) + "\n<Fill id=\"f\" surfaceMesh=\"${skin}\" cellSize=\"1\"/>\n"
                                                "<Voxelize id=\"v\"\n surface=\"${f}\"/>"),
