@@ -124,6 +124,17 @@ TEST(Examples, TheTourGivesHalfTheError) {
   EXPECT_NEAR(volume("ball.csv") * 12288, 4 * pi / 3, 0.02 * 4 * pi / 3);  // chords of 11 degrees
 }
 
+TEST(Readme, TheSceneInItRuns) {
+  const std::string readme = content(fs::path(MSML_SOURCE_DIR) / "README.md"), fence = "```xml\n";
+  const std::size_t from = readme.find(fence) + fence.size(), to = readme.find("```", from);
+  ASSERT_LT(to, readme.size());
+  const Folder folder;
+  const fs::path scene = folder.write("beam.msml.xml", readme.substr(from, to - from));
+  const Finished run = run_msml("exec " + quoted(scene) + " -o " + quoted(folder / "out"));
+  EXPECT_EQ(run.code, 0) << run.err;
+  EXPECT_TRUE(fs::exists(folder / "out" / "bent_0001.vtu"));
+}
+
 TEST(Examples, EveryAvailableOperatorStandsInOne) {
   std::string scenes;
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(MSML_SOURCE_DIR) / "examples"))
