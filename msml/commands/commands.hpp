@@ -18,7 +18,7 @@ struct SceneArguments {
   std::vector<std::string> set;        ///< "name=value"
   std::vector<std::string> requested;  ///< ids
   std::string log_json;
-  int jobs = 0, threads = 0;           ///< 0: as many as there are processors
+  int jobs = 0, threads = 0;  ///< 0: as many as there are processors
   bool dry_run = false, verbose = false, quiet = false, strict = false;
 };
 
@@ -32,9 +32,9 @@ int show_command(const Registry& registry, const SceneArguments& arguments, cons
 /// What stands on the command line of compare.
 struct CompareArguments {
   std::string a, b;
-  double tolerance = 0;                ///< largest allowed maximum difference, relative to the largest value of B
+  double tolerance = 0;  ///< largest allowed maximum difference, relative to the largest value of B
   bool has_tolerance = false;
-  std::vector<std::string> fields;     ///< only these; empty: all that both have
+  std::vector<std::string> fields;  ///< only these; empty: all that both have
 };
 /// Differences of the fields of two files. 0 within tolerance (or none given), 1 above.
 int compare_command(const Registry& registry, const CompareArguments& arguments);
