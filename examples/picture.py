@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws a VTU or VTP file as a PNG; needs python3-vtk9, and xvfb-run where there is no display."""
+"""Draws a VTU or VTP file as a PNG; needs python3-vtk9, python3-numpy, and xvfb-run without a display."""
 import argparse
 
 import vtk
