@@ -311,6 +311,7 @@ void Newton::report(Outcome& outcome) const {
   outcome.newton_iterations = iterations_;
   outcome.linear_solves = solves_;
   outcome.cg_iterations = linear_->iterations;
+  outcome.cg_gave_up = linear_->gave_up;
   outcome.seconds_assembly = seconds_assembly_;
   outcome.seconds_linear = seconds_linear_;
   outcome.matrix_bytes = (tangent_.values.size() + effective_.values.size()) * sizeof(double) +

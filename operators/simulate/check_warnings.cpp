@@ -54,6 +54,10 @@ std::vector<std::string> check_warnings(const Simulation& simulation, const fe::
         fmt::format("the time step damps the lowest period, {:.3g}, by {:.3g} % a cycle. Take dt below "
                     "{:.2g}, or timeIntegration = \"Newmark\"",
                     check.lowest_period, 100 * check.damped_per_cycle, tolerable_step(check.lowest_period)));
+  if (outcome.cg_gave_up)
+    warnings.push_back(
+        "conjugate gradients missed linearTolerance, so the matrix was factorised from then on. Use "
+        "linearSolver = \"direct\", or improve the mesh");
   if (worst.smallest_angle < sliver_angle)
     warnings.push_back(fmt::format(
         "element {} at {} is a sliver: a dihedral angle of {:.3g} degrees. Improve the mesh, "

@@ -51,9 +51,10 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
        .choices = {"static", "dynamicImplicitEuler", "Newmark", "NewmarkShapeMatching"},
        .doc = "Newmark: average acceleration (beta 1/4, gamma 1/2); NewmarkShapeMatching: the same"});
   keys.linear = tag.parameter<std::string>(
-      "linearSolver", {.fallback = "auto",
-                       .choices = {"direct", "iterativeCG", "CG", "GMRES", "auto"},
-                       .doc = "direct: sparse Cholesky; the others: conjugate gradients; auto: by size"});
+      "linearSolver",
+      {.fallback = "auto",
+       .choices = {"direct", "iterativeCG", "CG", "GMRES", "auto"},
+       .doc = "direct: sparse Cholesky; CG, GMRES: conjugate gradients; auto and MSML's iterativeCG: by size"});
   keys.preconditioner = tag.parameter<std::string>(
       "preconditioner",
       {.fallback = "auto",
@@ -96,6 +97,9 @@ void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
 
 void note_old_names(const Record& record, const Keys& keys, Reporter& reporter) {
   if (record[keys.unit] == "GPU") reporter.note("solver: processingUnit GPU is not there; the CPU is used");
+  if (record[keys.linear] == "iterativeCG")
+    reporter.note(
+        "solver: iterativeCG is taken as auto, which factorises where that is faster; CG insists on iterating");
   if (record[keys.linear] == "GMRES") reporter.note("solver: GMRES is taken as CG, since the matrices are symmetric");
   if (record[keys.integration] == "NewmarkShapeMatching")
     reporter.note("solver: NewmarkShapeMatching is taken as Newmark");
@@ -109,9 +113,9 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
                         : integration == "dynamicImplicitEuler" ? fe::Integrator::implicit_euler
                                                                 : fe::Integrator::newmark;
   const std::string& linear = record[keys.linear];
-  settings.linear_solver = linear == "direct" ? fe::LinearSolver::direct
-                           : linear == "auto" ? fe::LinearSolver::automatic
-                                              : fe::LinearSolver::cg;
+  settings.linear_solver = linear == "direct"                            ? fe::LinearSolver::direct
+                           : linear == "auto" || linear == "iterativeCG" ? fe::LinearSolver::automatic
+                                                                         : fe::LinearSolver::cg;
   settings.preconditioner = preconditioner(record, record[keys.preconditioner], reporter);
   settings.damping_mass = record[keys.damping_mass];
   settings.damping_stiffness = record[keys.damping_stiffness];

@@ -42,11 +42,48 @@ void LowerTriangle::gather(const BlockMatrix& A, double* values) const {
                     });
 }
 
+namespace {
+
+/// Conjugate gradients until they fail, Cholesky from then on.
+class WithFallback final : public LinearSystem {
+ public:
+  explicit WithFallback(const Settings& settings)
+      : settings_(settings), active_(make_conjugate_gradient(settings.preconditioner)) {}
+
+  LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
+    matrix_ = &A;
+    fixed_ = fixed;
+    return active_->factor(A, fixed);
+  }
+
+  LinearStatus solve(const Vector& b, double tolerance, Vector& x) override {
+    const long before = active_->iterations;
+    LinearStatus status = active_->solve(b, tolerance, x);
+    iterations += active_->iterations - before;
+    if (status != LinearStatus::limit || gave_up) return status;
+    gave_up = true;
+    active_ = make_cholesky(settings_.threads);
+    status = active_->factor(*matrix_, fixed_);
+    return status == LinearStatus::done ? active_->solve(b, tolerance, x) : status;
+  }
+
+  std::size_t factor_bytes() const override { return active_->factor_bytes(); }
+
+ private:
+  Settings settings_;
+  std::unique_ptr<LinearSystem> active_;
+  const BlockMatrix* matrix_ = nullptr;
+  Mask fixed_;
+};
+
+}  // namespace
+
 std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns) {
   constexpr long direct_limit = 600000;
   const bool direct = settings.linear_solver == LinearSolver::direct ||
                       (settings.linear_solver == LinearSolver::automatic && unknowns <= direct_limit);
   if (direct) return make_cholesky(settings.threads);
+  if (unknowns <= direct_limit) return std::make_unique<WithFallback>(settings);
   return make_conjugate_gradient(settings.preconditioner);
 }
 
