@@ -15,7 +15,8 @@ using msml::CompareArguments;
 using msml::Registry;
 using msml::SceneArguments;
 
-constexpr const char* footer = R"(Exit codes: 0 done, 1 comparison above tolerance, 2 bad input, 3 not converged, 4 internal fault, 130 interrupted.
+constexpr const char* footer =
+    R"(Exit codes: 0 done, 1 comparison above tolerance, 2 bad input, 3 not converged, 4 internal fault, 130 interrupted.
 Examples:
   msml exec scene.msml.xml -o results     run a scene, write its results to the folder results
   msml check scene.msml.xml               find every fault of a scene without running it
@@ -56,16 +57,20 @@ struct CommandLine {
   void add_scene_options(CLI::App* command) {
     command->add_option("scene", scene.scene, "the scene file (.msml.xml)")->required();
     command->add_option("-o,--output", scene.output_folder, "folder for the results (default: the current one)");
-    command->add_option("--set", scene.set, "name=value: give a variable of the scene another value")->allow_extra_args(false);
-    command->add_option("--request", scene.requested, "id of a task to run although nothing needs it")->allow_extra_args(false);
+    command->add_option("--set", scene.set, "name=value: give a variable of the scene another value")
+        ->allow_extra_args(false);
+    command->add_option("--request", scene.requested, "id of a task to run although nothing needs it")
+        ->allow_extra_args(false);
     command->add_flag("--strict", scene.strict, "warnings about old scenes are errors");
     command->add_flag("-v,--verbose", scene.verbose, "notes too");
     command->add_flag("-q,--quiet", scene.quiet, "warnings and errors only");
   }
 
   void add_exec_options() {
-    exec->add_option("-j,--jobs", scene.jobs, "nodes that run at once (default: processors)")->check(CLI::Range(1, 256));
-    exec->add_option("--threads", scene.threads, "threads inside a node (default: processors)")->check(CLI::Range(1, 256));
+    exec->add_option("-j,--jobs", scene.jobs, "nodes that run at once (default: processors)")
+        ->check(CLI::Range(1, 256));
+    exec->add_option("--threads", scene.threads, "threads inside a node (default: processors)")
+        ->check(CLI::Range(1, 256));
     exec->add_flag("-n,--dry-run", scene.dry_run, "print the plan, run nothing");
     exec->add_option("--log-json", scene.log_json, "write the report of the run to this file");
   }
@@ -77,8 +82,9 @@ struct CommandLine {
     compare_files->add_option("a", compare.a, "the mesh that is judged")->required();
     compare_files->add_option("b", compare.b, "the reference")->required();
     compare_files->add_option("--field", compare.fields, "only this field (may be repeated)")->allow_extra_args(false);
-    compare_files->add_option("--tolerance", compare.tolerance,
-                              "exit 1 if a maximum difference exceeds this share of the reference's largest value")
+    compare_files
+        ->add_option("--tolerance", compare.tolerance,
+                     "exit 1 if a maximum difference exceeds this share of the reference's largest value")
         ->check(CLI::NonNegativeNumber);
   }
 

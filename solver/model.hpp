@@ -158,7 +158,7 @@ struct Outcome {
   long unknowns = 0;
   int newton_iterations = 0, linear_solves = 0;
   long cg_iterations = 0;
-  bool cg_gave_up = false;           ///< CG missed its tolerance once, and Cholesky took over
+  bool cg_gave_up = false;  ///< CG missed its tolerance once, and Cholesky took over
   double seconds_setup = 0, seconds_assembly = 0, seconds_linear = 0;
   std::size_t matrix_bytes = 0, factor_bytes = 0;
 };

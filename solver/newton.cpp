@@ -55,6 +55,7 @@ Newton::Newton(const Model& model, const Equations& equations)
       tangent_(equations.elements().pattern()),
       effective_(equations.elements().pattern()),
       want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {
+  searching_ = model.settings.line_search;
   if (equations.has_followers()) followers_ = std::make_unique<BlockMatrix>(equations.elements().pattern());
 }
 
@@ -166,8 +167,7 @@ double Newton::line_search(const Increment& increment, const Vector& direction, 
     }
     // Either the residual shrinks, or the minimum along the direction is not overshot by much. A follower pressure has
     // no energy to search, and in slender bodies the residual grows before it falls.
-    if (!model_.settings.line_search || followers_ || new_norm <= norm || new_slope >= -0.8 * std::abs(slope))
-      return step;
+    if (!searching_ || followers_ || new_norm <= norm || new_slope >= -0.8 * std::abs(slope)) return step;
     step *= std::clamp(slope / (slope - new_slope), 0.1, 0.6);
   }
   return forces_.found.finite ? step : 0;
@@ -268,9 +268,18 @@ IncrementResult Newton::run(const Increment& increment) {
 }
 
 IncrementResult Newton::walk(const Increment& increment) {
-  const IncrementResult direct = run(increment);
-  const bool hopeless = direct.stop == Stop::singular || direct.stop == Stop::out_of_memory;
-  if (direct.stop == Stop::converged || hopeless || model_.settings.newton_iterations == 1) return direct;
+  const auto final = [this](const IncrementResult& result) {
+    return result.stop == Stop::converged || result.stop == Stop::singular || result.stop == Stop::out_of_memory ||
+           model_.settings.newton_iterations == 1;
+  };
+  searching_ = false;
+  IncrementResult direct = run(increment);
+  searching_ = model_.settings.line_search;
+  if (!final(direct) && searching_) {
+    tangent_current_ = false;
+    direct = run(increment);
+  }
+  if (final(direct)) return direct;
   evaluate(increment, increment.start, want_, false);
   const Vector unbalanced = this->residual(increment);
   Increment part = increment;

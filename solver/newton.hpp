@@ -37,8 +37,10 @@ class Newton {
   /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one. A
   /// static state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
   IncrementResult run(const Increment& increment);
-  /// The same; where that fails, walks to the solution along R(u) = (1 - s) R(start), s from 0 to 1, with the supports
-  /// moving in proportion, in pieces that halve on failure and double on success (at least 2^-10).
+  /// The same, first with full steps: near a time step's start they converge where a search along a sliver's sharp
+  /// turns only creeps. Where they fail with the line search; where that fails too, walks to the solution along R(u) =
+  /// (1 - s) R(start), s from 0 to 1, with the supports moving in proportion, in pieces that halve on failure and
+  /// double on success (at least 2^-10).
   IncrementResult walk(const Increment& increment);
 
   /// Forces and tangent at u for the next increment, with the tangent that increments start from.
@@ -79,6 +81,7 @@ class Newton {
   Forces forces_;
   Want want_;
   bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from
+  bool searching_ = true;         ///< the line search is on
   bool indefinite_ = false;       ///< the last exact tangent could not be factorised
   double round_off_ = 0;          ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;

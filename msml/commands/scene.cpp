@@ -26,8 +26,7 @@ Verbosity verbosity(const SceneArguments& arguments) {
 }
 
 Compilation compile_scene(const Registry& registry, const SceneArguments& arguments) {
-  return compile_file(arguments.scene, registry,
-                      {settings(arguments.set), arguments.output_folder, arguments.strict});
+  return compile_file(arguments.scene, registry, {settings(arguments.set), arguments.output_folder, arguments.strict});
 }
 
 int processors(int wanted) {
@@ -127,10 +126,14 @@ int show_command(const Registry& registry, const SceneArguments& arguments, cons
   const Compilation compilation = compile_scene(registry, arguments);
   if (!print_messages(compilation, verbosity(arguments))) return bad_input;
   const std::string dot = to_dot(compilation.graph, make_plan(compilation.graph, arguments.requested).runs);
-  if (file.empty()) std::fputs(dot.c_str(), stdout);
-  else if (file.ends_with(".svg")) write_svg(dot, file);
-  else if (file.ends_with(".dot")) write_whole(fs::path(file), dot);
-  else throw Error(file + " ends in neither .dot nor .svg");
+  if (file.empty())
+    std::fputs(dot.c_str(), stdout);
+  else if (file.ends_with(".svg"))
+    write_svg(dot, file);
+  else if (file.ends_with(".dot"))
+    write_whole(fs::path(file), dot);
+  else
+    throw Error(file + " ends in neither .dot nor .svg");
   return 0;
 }
 

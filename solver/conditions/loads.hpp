@@ -25,8 +25,8 @@ struct LoadSet {
 LoadSet make_loads(const Model& model, const Step& step, const Numbering& numbering, const ScalarMatrix& mass);
 
 /// force += scale * follower forces at positions X + u: f_a = -p int N_a (x,r cross x,s) dr ds. If matrix is given,
-/// adds scale * (-df/du). It is symmetric only where the pressure is uniform and the rim of the loaded surface is held or
-/// closed (Schweizerhof and Ramm 1984, doi 10.1016/0045-7949(84)90174-0); in a slender body the rest is not small.
+/// adds scale * (-df/du). It is symmetric only where the pressure is uniform and the rim of the loaded surface is held
+/// or closed (Schweizerhof and Ramm 1984, doi 10.1016/0045-7949(84)90174-0); in a slender body the rest is not small.
 void add_followers(const LoadSet& loads, double scale, const Vector& X, const Vector& u, Vector& force,
                    BlockMatrix* matrix);
 

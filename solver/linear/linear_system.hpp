@@ -35,7 +35,7 @@ class LinearSystem {
   /// x at free unknowns so that |b - A x| <= tolerance |b| there; 0 at the others.
   virtual LinearStatus solve(const Vector& b, double tolerance, Vector& x) = 0;
   virtual std::size_t factor_bytes() const = 0;
-  long iterations = 0;  ///< CG iterations so far, over all solves
+  long iterations = 0;   ///< CG iterations so far, over all solves
   bool gave_up = false;  ///< CG missed its tolerance once, and Cholesky has taken over
 };
 
@@ -43,8 +43,8 @@ std::unique_ptr<LinearSystem> make_cholesky(int threads);
 std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner);
 
 /// The system that the settings ask for. `automatic` factorises up to 600,000 unknowns and iterates above: there the
-/// factor of a tet10 mesh would pass about 16 GB. Up to that size conjugate gradients that miss their tolerance give way
-/// to a factorisation, for good.
+/// factor of a tet10 mesh would pass about 16 GB. Up to that size conjugate gradients that miss their tolerance give
+/// way to a factorisation, for good.
 std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns);
 
 }  // namespace msml::fe

@@ -38,9 +38,9 @@ class Law {
   virtual void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const = 0;
   /// Fills measures[i] from gradients[i].
   virtual void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const = 0;
-  virtual std::string name() const = 0;                ///< the tag of the language
-  virtual double poisson_ratio() const = 0;            ///< of the small-strain limit
-  virtual double shear_modulus() const = 0;            ///< of the small-strain limit, stress
+  virtual std::string name() const = 0;      ///< the tag of the language
+  virtual double poisson_ratio() const = 0;  ///< of the small-strain limit
+  virtual double shear_modulus() const = 0;  ///< of the small-strain limit, stress
   /// True if Want::tangent is the derivative of the stress; otherwise Newton's method converges, but not quadratically.
   virtual bool exact_tangent() const { return true; }
   virtual bool small_strain() const { return false; }  ///< true if the law is linear in H and sees no rotation
