@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "msml/compile/grammar.hpp"
 #include "msml/compile/work.hpp"
 
 namespace msml {
@@ -32,6 +33,17 @@ void check_holders(Work& work, const Tag& tag) {
   for (const Tag& inner : tag.children) check_holders(work, inner);
 }
 
+void read_units(Work& work, const Tag& root) {
+  const Tag* environment = root.only("environment");
+  if (!environment) return;
+  EnvironmentKeys keys;
+  describe_environment(keys);
+  const Binding binding = bind_attributes(work, *environment);
+  const auto* units = std::get_if<Value>(&binding.sources[static_cast<std::size_t>(keys.units.slot)]);
+  const auto* text = units ? std::get_if<std::string>(units) : nullptr;
+  if (text) work.out.graph.units = *text;
+}
+
 void run_passes(Work& work, const Tag& root) {
   if (const Tag* variables = root.only("variables")) declare_variables(work, *variables);
   apply_settings(work);
@@ -40,6 +52,7 @@ void run_passes(Work& work, const Tag& root) {
   declare_targets(work);
   bind_tasks(work);
   lower_objects(work, root);
+  read_units(work, root);
   check_holders(work, root);
   note_unused(work);
   order_nodes(work);

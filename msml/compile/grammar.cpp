@@ -76,11 +76,20 @@ void add_object(Registry& registry) {
 }
 
 void add_environment(Registry& registry) {
-  add(registry, holder("environment", "How the simulation is carried out.", {{"solver", 0, 1}, {"simulation", 0, 1}}));
+  EnvironmentKeys keys;
+  add(registry, describe_environment(keys));
   add(registry, holder("simulation", "The steps, run one after another.", {{"step", 1}}));
 }
 
 }  // namespace
+
+Description describe_environment(EnvironmentKeys& keys) {
+  Description environment =
+      holder("environment", "How the simulation is carried out.", {{"solver", 0, 1}, {"simulation", 0, 1}});
+  keys.units = environment.parameter<std::string>(
+      "units", {.optional = true, .doc = "label of the consistent units, such as 'mm N s MPa'; goes to the report"});
+  return environment;
+}
 
 Description describe_variable(VariableKeys& keys) {
   Description var("var", "var", "A named value.");

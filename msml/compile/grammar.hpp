@@ -15,6 +15,12 @@ struct VariableKeys {
 /// The description of <var> and its keys, always the same.
 Description describe_variable(VariableKeys& keys);
 
+struct EnvironmentKeys {
+  Key<std::string> units;
+};
+/// The description of <environment> and its keys, always the same.
+Description describe_environment(EnvironmentKeys& keys);
+
 /// Attributes that old scenes carry without meaning: accepted with a note in verbose mode. `tag` is where it stands.
 bool is_legacy_attribute(const std::string& tag, const std::string& attribute);
 

@@ -63,6 +63,7 @@ struct Node {
 struct Graph {
   std::string scene;  ///< file name as given
   std::filesystem::path folder;
+  std::string units;  ///< label of the scene's units, or ""
   std::vector<Node> nodes;
   std::vector<int> order;  ///< every node after all it needs; ties by place in the scene
 };

@@ -75,6 +75,7 @@ std::string report_json(const Graph& graph, const Plan& plan, const RunResult& r
   Json json{{"program", "msml"},        {"version", MSML_VERSION},    {"scene", graph.scene},
             {"status", status(result)}, {"seconds", result.seconds},  {"peakBytes", peak(result)},
             {"jobs", options.jobs},     {"threads", options.threads}, {"outputFolder", options.output_folder.string()}};
+  if (!graph.units.empty()) json["units"] = graph.units;
   json["nodes"] = Json::array();
   for (const int i : plan.order)
     json["nodes"].push_back(

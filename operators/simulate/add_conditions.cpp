@@ -87,7 +87,8 @@ void carry_on(std::vector<fe::Step>& steps, const std::vector<std::vector<fe::Pr
 void warn_unknown_step(const Placed& placed, const std::vector<fe::Step>& steps, Reporter& reporter) {
   std::vector<std::string> names;
   for (const fe::Step& step : steps) names.push_back(step.name);
-  reporter.warn(fmt::format("{} never acts: forStep = '{}' is no step{}; the steps are {}", located(*placed.record),
+  // A note: the compiler has warned of it, with the line.
+  reporter.note(fmt::format("{} never acts: forStep = '{}' is no step{}; the steps are {}", located(*placed.record),
                             placed.step, did_you_mean(placed.step, names), fmt::join(names, ", ")));
 }
 

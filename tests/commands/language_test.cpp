@@ -41,9 +41,10 @@ TEST(Language, EveryAttributeAndOutputIsExplained) {
 TEST(Language, NoNumberMayBeNanOrInfinite) {
   for (const Description* each : all_descriptions())
     for (const Slot& slot : each->slots())
-      if (slot.role != Role::output && (slot.type == Type::number || slot.type == Type::numbers))
+      if (slot.role != Role::output && (slot.type == Type::number || slot.type == Type::numbers)) {
         for (const char* text : {"nan", "inf", "-inf", "1e999"})
           EXPECT_FALSE(parse_literal(slot, text, slot.indexes).problem.empty()) << each->tag() << " " << slot.name;
+      }
 }
 
 TEST(Language, EveryDefaultIsAllowed) {

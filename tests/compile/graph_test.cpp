@@ -240,6 +240,10 @@ TEST(Steps, StepOfASceneWithoutStepsIsAWarning) {
             "s.xml:8: forStep = push names no step, so this never acts; no step of the scene has a name");
 }
 
+TEST(Units, TheirLabelReachesTheGraph) {
+  EXPECT_EQ(compiled("<msml>\n<environment units=\"mm N s MPa\"/>\n</msml>").graph.units, "mm N s MPa");
+}
+
 TEST(Steps, NamesOfStepsDiffer) {
   EXPECT_EQ(faults_of(object({.environment = "<simulation><step name=\"push\"/>\n<step name=\"push\"/></simulation>"})),
             "s.xml:16: two steps are named push");

@@ -101,7 +101,7 @@ TEST(Structure, UnknownAttributeWithoutNeighbourShowsAll) {
 TEST(Structure, HoldersRefuseAttributesToo) {
   EXPECT_EQ(faults_of("<msml colour=\"red\">\n<workflow speed=\"3\"/>\n<environment\n tolerance=\"1\"/></msml>"),
             "s.xml:1: msml has no attribute colour\ns.xml:2: workflow has no attribute speed\n"
-            "s.xml:4: environment has no attribute tolerance");
+            "s.xml:4: environment has no attribute tolerance; it has units");
 }
 
 TEST(Structure, EnvironmentIsCheckedWithoutAnObject) {
