@@ -7,16 +7,23 @@
 
 #include "solver/linear/linear_system.hpp"
 
-extern "C" void openblas_set_num_threads(int threads);
+extern "C" {
+void openblas_set_num_threads(int threads);
+void omp_set_max_active_levels(int levels);
+}
 
 namespace msml::fe {
 namespace {
 
 /// OpenBLAS has as many threads as asked for while an object lives, and one elsewhere. The setting belongs to the
-/// process, so one factorisation runs at a time.
+/// process, so one factorisation runs at a time. CHOLMOD's own OpenMP loops, which ask for four threads wherever they
+/// run and spend more time waking them than working, run in the calling thread.
 class BlasThreads {
  public:
-  explicit BlasThreads(int threads) : lock_(mutex()) { openblas_set_num_threads(threads); }
+  explicit BlasThreads(int threads) : lock_(mutex()) {
+    openblas_set_num_threads(threads);
+    omp_set_max_active_levels(0);
+  }
   ~BlasThreads() { openblas_set_num_threads(1); }
   BlasThreads(const BlasThreads&) = delete;
   BlasThreads& operator=(const BlasThreads&) = delete;
@@ -47,7 +54,6 @@ class Cholesky final : public LinearSystem {
   Cholesky& operator=(const Cholesky&) = delete;
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
-    const BlasThreads blas(threads_);
     matrix_ = &A;
     if (!factor_ || fixed != fixed_) {
       release();
@@ -56,9 +62,12 @@ class Cholesky final : public LinearSystem {
       values_.resize(lower_.source.size());
       if (lower_.size() == 0) return LinearStatus::done;
       cholmod_sparse view = sparse();
+      const BlasThreads blas(1);
       factor_ = cholmod_analyze(&view, &common_);
       if (!factor_) return failure();
+      large_ = common_.fl > 2e10;
     }
+    const BlasThreads blas(large_ ? threads_ : 1);
     lower_.gather(A, values_.data());
     cholmod_sparse view = sparse();
     cholmod_factorize(&view, factor_, &common_);
@@ -101,7 +110,7 @@ class Cholesky final : public LinearSystem {
 
   /// x += A^-1 residual on the free unknowns.
   bool correct(const Vector& residual, Vector& x) {
-    const BlasThreads blas(threads_);
+    const BlasThreads blas(1);
     std::vector<double> right(static_cast<std::size_t>(lower_.size()));
     for (std::size_t k = 0; k < right.size(); ++k) right[k] = residual[lower_.unknown_of[k]];
     cholmod_dense view{};
@@ -144,6 +153,7 @@ class Cholesky final : public LinearSystem {
   }
 
   int threads_;
+  bool large_ = false;  ///< enough operations that waking a second thread for each dense block pays
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
   const BlockMatrix* matrix_ = nullptr;
