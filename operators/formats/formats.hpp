@@ -46,4 +46,11 @@ void write_with_extension(const std::filesystem::path& path, const std::string& 
 /// Throws Error if the image is turned; for formats that cannot say so. `instead` names formats that can.
 void require_upright(const Image& image);
 
+/// A format that is one text: parsed to a mesh (or a surface, where its cells are triangles), and written from one.
+Format mesh_text_format(std::string extension, std::string doc, Mesh (*parse)(const std::string&),
+                        std::string (*written)(const Mesh&));
+/// A format whose file is parsed to an image as a whole, and written from one.
+Format image_text_format(std::string extension, std::string doc, Image (*parse)(const std::string&),
+                         std::string (*written)(const Image&));
+
 }  // namespace msml::operators

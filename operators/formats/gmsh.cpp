@@ -136,16 +136,11 @@ std::string written(const Mesh& mesh) {
 }  // namespace
 
 Format gmsh() {
-  return {.extensions = {".msh"},
-          .doc =
-              "Gmsh 2.2 in ASCII: points, lines, triangles and tetrahedra up to second order; the first tag "
-              "(physical group) is the region id, fields are not kept.",
-          .reads = {Type::mesh, Type::surface},
-          .writes = {Type::mesh, Type::surface},
-          .read = [](const auto& path,
-                     Type wanted) { return reading(path, [&] { return as_wanted(parse(text_of(path)), wanted); }); },
-          .write = [](const Value& value, const auto& path,
-                      const std::string&) { writing(path, [&] { put(path, written(*mesh_in(value))); }); }};
+  return mesh_text_format(".msh",
+                          "Gmsh 2.2 in ASCII: points, lines, triangles and tetrahedra up to second order; the first "
+                          "tag (physical group) is the "
+                          "region id, fields are not kept.",
+                          parse, written);
 }
 
 }  // namespace msml::operators

@@ -100,16 +100,11 @@ std::string written(const Mesh& mesh) {
 }  // namespace
 
 Format medit() {
-  return {.extensions = {".mesh"},
-          .doc =
-              "Medit mesh in ASCII: edges, triangles and tetrahedra; references are region ids, fields are not "
-              "kept. Cells are grouped by kind.",
-          .reads = {Type::mesh, Type::surface},
-          .writes = {Type::mesh, Type::surface},
-          .read = [](const auto& path,
-                     Type wanted) { return reading(path, [&] { return as_wanted(parse(text_of(path)), wanted); }); },
-          .write = [](const Value& value, const auto& path,
-                      const std::string&) { writing(path, [&] { put(path, written(*mesh_in(value))); }); }};
+  return mesh_text_format(
+      ".mesh",
+      "Medit mesh in ASCII: edges, triangles and tetrahedra; references are region ids, fields are not kept. Cells are "
+      "grouped by kind.",
+      parse, written);
 }
 
 }  // namespace msml::operators

@@ -116,15 +116,9 @@ std::string written(const Image& image) {
 }  // namespace
 
 Format meta_image() {
-  return {
-      .extensions = {".mha"},
-      .doc = "MetaImage with the voxels in the same file, plain or compressed; written plain, with direction.",
-      .reads = {Type::image},
-      .writes = {Type::image},
-      .read = [](const auto& path,
-                 Type) { return reading(path, [&] { return std::make_shared<const Image>(parse(text_of(path))); }); },
-      .write = [](const Value& value, const auto& path,
-                  const std::string&) { writing(path, [&] { put(path, written(*std::get<ImagePtr>(value))); }); }};
+  return image_text_format(
+      ".mha", "MetaImage with the voxels in the same file, plain or compressed; written plain, with direction.", parse,
+      written);
 }
 
 }  // namespace msml::operators

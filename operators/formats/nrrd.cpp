@@ -147,15 +147,9 @@ std::string written(const Image& image) {
 }  // namespace
 
 Format nrrd() {
-  return {
-      .extensions = {".nrrd"},
-      .doc = "NRRD with attached data, raw or gzip; written raw, with direction. Coordinates are the file's own.",
-      .reads = {Type::image},
-      .writes = {Type::image},
-      .read = [](const auto& path,
-                 Type) { return reading(path, [&] { return std::make_shared<const Image>(parse(text_of(path))); }); },
-      .write = [](const Value& value, const auto& path,
-                  const std::string&) { writing(path, [&] { put(path, written(*std::get<ImagePtr>(value))); }); }};
+  return image_text_format(
+      ".nrrd", "NRRD with attached data, raw or gzip; written raw, with direction. Coordinates are the file's own.",
+      parse, written);
 }
 
 }  // namespace msml::operators

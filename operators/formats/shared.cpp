@@ -87,4 +87,32 @@ void require_upright(const Image& image) {
         ".vti, .mha and .nrrd can");
 }
 
+Format mesh_text_format(std::string extension, std::string doc, Mesh (*parse)(const std::string&),
+                        std::string (*written)(const Mesh&)) {
+  return {
+      .extensions = {std::move(extension)},
+      .doc = std::move(doc),
+      .reads = {Type::mesh, Type::surface},
+      .writes = {Type::mesh, Type::surface},
+      .read = [parse](const auto& path,
+                      Type wanted) { return reading(path, [&] { return as_wanted(parse(text_of(path)), wanted); }); },
+      .write = [written](const Value& value, const auto& path,
+                         const std::string&) { writing(path, [&] { put(path, written(*mesh_in(value))); }); }};
+}
+
+Format image_text_format(std::string extension, std::string doc, Image (*parse)(const std::string&),
+                         std::string (*written)(const Image&)) {
+  return {.extensions = {std::move(extension)},
+          .doc = std::move(doc),
+          .reads = {Type::image},
+          .writes = {Type::image},
+          .read =
+              [parse](const auto& path, Type) {
+                return reading(path, [&] { return std::make_shared<const Image>(parse(text_of(path))); });
+              },
+          .write = [written](
+                       const Value& value, const auto& path,
+                       const std::string&) { writing(path, [&] { put(path, written(*std::get<ImagePtr>(value))); }); }};
+}
+
 }  // namespace msml::operators
