@@ -11,6 +11,7 @@ if(MSML_NATIVE)
   add_compile_options(-march=native)
 endif()
 if(MSML_SANITIZE)
-  add_compile_options(-fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  # -O1: a third of the compile time, and call stacks that can be read.
+  add_compile_options(-O1 -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
   add_link_options(-fsanitize=address,undefined)
 endif()
