@@ -12,7 +12,7 @@
 namespace msml {
 namespace {
 
-constexpr int bar_width = 24;
+constexpr int bar_width = 16;
 
 /// The first `columns` columns of a UTF-8 text.
 std::string clipped(const std::string& text, std::size_t columns) {
@@ -66,7 +66,8 @@ void Terminal::draw(int i, double share, const std::string& words) {
   const int filled = static_cast<int>(inside * bar_width + 0.5);
   const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
                           std::string(static_cast<std::size_t>(bar_width - filled), '.');
-  const std::string text = fmt::format("{}  [{}] {:3.0f} %  {}", head(i, done_ + 1), bar, inside * 100, words);
+  const std::string text = fmt::format("[{}/{}] {} {}  [{}] {:.0f} %  {}", done_ + 1, count_, node(i).tag(), node(i).id,
+                                       bar, inside * 100, words);
   std::fprintf(stderr, "\r\033[K%s", clipped(text, terminal_columns()).c_str());
   std::fflush(stderr);
   bar_ = true;
