@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Arguments -> command -> exit code. The only place that catches msml::Error.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "msml/commands/commands.hpp"
@@ -88,6 +89,21 @@ struct CommandLine {
         ->check(CLI::NonNegativeNumber);
   }
 
+  /// Throws Error for a first word that is no command, with the nearest one.
+  void check_command_name(int argc, char** argv) const {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::vector<std::string> names;
+    std::string list;
+    for (const CLI::App* each : app.get_subcommands({})) {
+      names.push_back(each->get_name());
+      list += (list.empty() ? "" : ", ") + each->get_name();
+    }
+    const std::string word = argv[1];
+    if (std::find(names.begin(), names.end(), word) == names.end())
+      throw msml::Error("no command is called " + msml::shortened(word) + msml::did_you_mean(word, names) +
+                        "; there are " + list);
+  }
+
   int run(const Registry& registry) {
     if (exec->parsed()) return msml::exec_command(registry, scene);
     if (check->parsed()) return msml::check_command(registry, scene);
@@ -108,6 +124,11 @@ struct CommandLine {
 int main(int argc, char** argv) {
   try {
     CommandLine line;
+    if (argc < 2) {
+      std::fputs(line.app.help().c_str(), stderr);
+      return static_cast<int>(msml::Failure::input);
+    }
+    line.check_command_name(argc, argv);
     try {
       line.app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

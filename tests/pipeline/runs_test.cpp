@@ -113,6 +113,17 @@ TEST(Runs, BadInputWritesNothing) {
   EXPECT_FALSE(fs::exists(folder / "bad"));
 }
 
+TEST(CommandLine, NamesTheNearestCommandAndShowsHelpWithoutOne) {
+  const Finished wrong = run_msml("exce scene.msml.xml");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_EQ(wrong.err,
+            "no command is called exce (did you mean 'exec'?); there are exec, check, show, help, list, "
+            "schema, compare\n");
+  const Finished none = run_msml("");
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("run a scene"));
+}
+
 TEST(Runs, ADryRunPrintsThePlanAndWritesNothing) {
   const Folder folder;
   BeamScene scene;
