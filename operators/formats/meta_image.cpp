@@ -78,9 +78,11 @@ Image parse(const std::string& bytes) {
   if (get(keys, {"ElementDataFile"}, "") != "LOCAL")
     throw Error("keeps its voxels in another file, " + get(keys, {"ElementDataFile"}, "") + "; only LOCAL can be read");
   Image image;
-  Scanner sizes(keys.count("DimSize") ? keys.at("DimSize") : "");
+  const std::string dim_size = keys.count("DimSize") ? keys.at("DimSize") : "";
+  Scanner sizes(dim_size);
   for (int& size : image.size) size = static_cast<int>(std::clamp(sizes.integer(), 0LL, 1LL << 30));
-  image.components = static_cast<int>(Scanner(get(keys, {"ElementNumberOfChannels"}, "1")).integer());
+  const std::string channels = get(keys, {"ElementNumberOfChannels"}, "1");
+  image.components = static_cast<int>(Scanner(channels).integer());
   image.spacing = vec(get(keys, {"ElementSpacing", "ElementSize"}, "1 1 1"));
   image.origin = vec(get(keys, {"Offset", "Position", "Origin"}, "0 0 0"));
   image.direction = mat(get(keys, {"TransformMatrix", "Rotation", "Orientation"}, "1 0 0 0 1 0 0 0 1"));

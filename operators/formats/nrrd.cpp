@@ -110,7 +110,8 @@ Image parse(const std::string& bytes) {
   std::size_t data = 0;
   const Keys keys = keys_of(bytes, data);
   if (keys.count("data file") || keys.count("datafile")) throw Error("keeps its voxels in another file");
-  Scanner in(keys.count("sizes") ? keys.at("sizes") : "");
+  const std::string line = keys.count("sizes") ? keys.at("sizes") : "";
+  Scanner in(line);
   std::vector<int> sizes;
   while (!in.at_end()) sizes.push_back(static_cast<int>(std::clamp(in.integer(), 0LL, 1LL << 30)));
   if (sizes.size() != 3 && sizes.size() != 4)

@@ -10,6 +10,7 @@ namespace msml::operators {
 class Scanner {
  public:
   explicit Scanner(std::string_view text, bool comments = false) : text_(text), comments_(comments) {}
+  explicit Scanner(std::string&& text, bool comments = false) = delete;  ///< the text must outlive the cursor
   /// True if only blanks and comments are left.
   bool at_end();
   /// The next word; throws Error at the end.
