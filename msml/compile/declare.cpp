@@ -90,11 +90,6 @@ void split_task(Work& work, Task task, const std::string& attribute, const std::
   if (const auto named = work.scope.find(task.id); named != work.scope.end()) named->second.nodes = nodes;
 }
 
-std::string with_star(std::string text, const std::string& star) {
-  for (std::size_t i = 0; (i = text.find('*', i)) != std::string::npos; i += star.size()) text.replace(i, 1, star);
-  return text;
-}
-
 bool writable(Work& work, Type type, const std::string& file, const Location& where, const std::string& attribute) {
   const bool verbatim = type == Type::file || !is_data(type);
   if (verbatim) return true;

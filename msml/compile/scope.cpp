@@ -85,4 +85,9 @@ bool natural_less(const std::string& a, const std::string& b) {
   return a.size() - i < b.size() - j;
 }
 
+std::string with_star(std::string text, const std::string& star) {
+  for (std::size_t i = 0; (i = text.find('*', i)) != std::string::npos; i += star.size()) text.replace(i, 1, star);
+  return text;
+}
+
 }  // namespace msml

@@ -48,4 +48,7 @@ std::string same_file(const std::string& file);
 /// a2 before a10: digits compare as numbers.
 bool natural_less(const std::string& a, const std::string& b);
 
+/// The text with every `*` replaced by `star`.
+std::string with_star(std::string text, const std::string& star);
+
 }  // namespace msml

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <mutex>
 
+#include "msml/compile/scope.hpp"
 #include "msml/core/atomic_file.hpp"
 
 namespace msml {
@@ -86,11 +87,6 @@ void write_target(const Value& value, const fs::path& path, const Registry& regi
   } else {
     registry.write(value, path);
   }
-}
-
-std::string with_star(std::string text, const std::string& star) {
-  for (std::size_t i = 0; (i = text.find('*', i)) != std::string::npos; i += star.size()) text.replace(i, 1, star);
-  return text;
 }
 
 class NodeRun {
