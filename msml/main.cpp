@@ -93,15 +93,15 @@ struct CommandLine {
   void check_command_name(int argc, char** argv) const {
     if (argc < 2 || argv[1][0] == '-') return;
     std::vector<std::string> names;
-    std::string list;
+    std::string known;
     for (const CLI::App* each : app.get_subcommands({})) {
       names.push_back(each->get_name());
-      list += (list.empty() ? "" : ", ") + each->get_name();
+      known += (known.empty() ? "" : ", ") + each->get_name();
     }
     const std::string word = argv[1];
     if (std::find(names.begin(), names.end(), word) == names.end())
       throw msml::Error("no command is called " + msml::shortened(word) + msml::did_you_mean(word, names) +
-                        "; there are " + list);
+                        "; there are " + known);
   }
 
   int run(const Registry& registry) {
