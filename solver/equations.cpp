@@ -49,7 +49,7 @@ void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, F
   if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
   if (followers) followers->set_zero();
-  for (const auto& [set, scale] : loads) {
+  for (const auto& [set, scale, time] : loads) {
     forces.external += scale * set->dead;
     add_followers(*set, scale, X_, u, forces.external, followers);
   }

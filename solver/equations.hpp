@@ -9,8 +9,13 @@
 
 namespace msml::fe {
 
-/// Loads that act together, each with its share.
-using ScaledLoads = std::vector<std::pair<const LoadSet*, double>>;
+/// Loads of a step that act at a time: constants with their share, functions of time as they are then.
+struct ActingLoads {
+  const LoadSet* set;
+  double share, time;
+};
+/// Loads that act together.
+using ScaledLoads = std::vector<ActingLoads>;
 
 /// Velocity and acceleration as functions of the displacement at the end of a time step:
 /// v = velocity_factor (u - u0) + v0, a = acceleration_factor (u - u0) + a0. Statics has zero factors.

@@ -4,6 +4,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,36 @@ namespace msml::fe {
 
 class Law;  // solver/materials/law.hpp
 
+/// The law of up to eight elements (cell ids) side by side, where parameters differ between elements: lane k is element
+/// k; lanes that are not named repeat the last.
+using LocalLaw = std::function<std::shared_ptr<const Law>(std::span<const int> elements)>;
+
+/// Quasi-linear viscoelasticity: the second Piola stress is the convolution of G(t) = 1 - sum_i g_i (1 - exp(-t/tau_i))
+/// with the rate of the law's own. The law is the instantaneous one, or the long-term one, which is then divided by
+/// 1 - sum g_i. Empty: elastic.
+struct Prony {
+  std::vector<double> g, tau;  ///< g_i > 0 with a sum < 1; tau_i > 0, time
+  bool long_term = false;      ///< the law is the long-term one
+};
+
 /// A group of elements with one material. Units are the scene's own, consistent.
 struct Region {
   std::string name;
-  std::shared_ptr<const Law> law;
-  double density = 1;         ///< mass per reference volume, >= 0
-  std::vector<int> elements;  ///< cell ids of tet4 or tet10 cells of Model::mesh
+  std::shared_ptr<const Law> law;  ///< where local_law is set: a typical one, for messages and settings
+  double density = 1;              ///< mass per reference volume, >= 0
+  std::vector<int> elements;       ///< cell ids of Model::mesh
+  LocalLaw local_law = {};         ///< empty: `law` everywhere
+  Prony prony = {};
 };
+
+/// How an element is computed. single_rotation: quadratic tetrahedra with one rotation each; fbar: linear tetrahedra
+/// with volume changes averaged over patches; mixed: quadratic displacement and linear pressure.
+enum class Formulation { standard, single_rotation, fbar, mixed };
+enum class Plane { strain, stress };
+
+/// A vector or a number as a function of the reference position and of time.
+using VectorFunction = std::function<Vec3(const Vec3& X, double t)>;
+using ScalarFunction = std::function<double(const Vec3& X, double t)>;
 
 enum class Ramp { linear, step };
 
@@ -31,14 +55,16 @@ struct Prescribed {
   std::vector<int> nodes;
   std::vector<Vec3> values;  ///< one for all, or one per node
   bool components[3] = {true, true, true};
-  Ramp ramp = Ramp::linear;  ///< zero displacement (a fixed node) uses step
+  Ramp ramp = Ramp::linear;      ///< zero displacement (a fixed node) uses step
+  VectorFunction function = {};  ///< if set, the displacement at X and t instead of `values`, without a ramp
 };
 
 /// Force on each node (not shared between them), dead.
 struct NodalForce {
   std::string name;
   std::vector<int> nodes;
-  std::vector<Vec3> values;  ///< one for all, or one per node
+  std::vector<Vec3> values;      ///< one for all, or one per node
+  VectorFunction function = {};  ///< if set, the force at X and t instead of `values`
 };
 
 /// A boundary face of a tetrahedron: element and local face (see msml::tet_faces).
@@ -54,6 +80,8 @@ struct FaceLoad {
   std::vector<double> pressures;  ///< one for all or one per face; empty if a traction
   std::vector<Vec3> tractions;    ///< force per reference area; one for all or one per face; empty if a pressure
   bool follower = false;          ///< pressure acts on the deformed face (with its tangent)
+  VectorFunction traction_function = {};  ///< if set, instead of `tractions`
+  ScalarFunction pressure_function = {};  ///< if set, instead of `pressures`
 };
 
 /// One stage of a simulation: `count` time steps of `dt`. What acts is listed anew for each stage. In dynamics loads
@@ -92,11 +120,22 @@ struct Settings {
 
 struct Model {
   std::shared_ptr<const Mesh> mesh;  ///< nodes that belong to no listed element carry no unknowns
-  std::vector<Region> regions;       ///< disjoint; all elements of one kind: tet4 or tet10
+  std::vector<Region> regions;       ///< disjoint; all elements of one kind
+  Formulation formulation = Formulation::standard;
+  Plane plane = Plane::strain;  ///< of triangles
+  double thickness = 1;         ///< of triangles; cross-section of lines
   std::vector<Step> steps;
   Settings settings;
   /// Throws Error on what cannot be solved: an inverted reference element, a static body free to move, …
   void check() const;
+};
+
+/// What a state holds, and what went in and out since the start. Loads given as functions and constants both do work.
+struct Energies {
+  double elastic = 0, kinetic = 0;
+  double external_work = 0;  ///< of loads and moved supports, by the trapezoidal rule over the increments
+  double dissipated = 0;     ///< by Rayleigh damping and dampers, the same way
+  Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  ///< about the origin, of the deformed body
 };
 
 /// The unknowns at one time. All arrays are #points x 3 of Model::mesh.
@@ -106,6 +145,7 @@ struct State {
   int increment = 0;  ///< 0 = initial state, then 1, 2, … over all steps
   Points displacement, velocity, acceleration;
   Points reaction;  ///< force of the constraint on the body; zero where free
+  Energies energies;
 };
 
 /// What the equations gave at the elements of one state; one entry per mesh cell (zero for cells without unknowns).

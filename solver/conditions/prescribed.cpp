@@ -4,7 +4,7 @@
 
 namespace msml::fe {
 
-Vector Supports::at(double share) const {
+Vector Supports::at(double share, double /*time*/) const {
   Vector value = Vector::Zero(start.size());
   for (std::size_t k = 0; k < fixed.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);

@@ -11,8 +11,8 @@ struct Supports {
   Mask fixed;
   Vector start, end;
   Mask ramped;  ///< reached linearly over the step; the others at once
-  /// Values at a share of the step in (0, 1]; entries of free unknowns are 0.
-  Vector at(double share) const;
+  /// Values at a share of the step in (0, 1] and the time there; entries of free unknowns are 0.
+  Vector at(double share, double time) const;
 };
 
 /// `u` is the displacement at the start of the step. Where two conditions fix one unknown, the later wins. Nodes that

@@ -53,6 +53,9 @@ class Elements {
   virtual void add_mass(bool lumped, ScalarMatrix& mass) const = 0;
   /// Displacement gradients of every element of numbering().elements, in that order.
   virtual std::vector<ElementPoints> points(const Vector& u) const = 0;
+  /// For materials with a history: called before the increments of a time step of dt, and when its end is accepted.
+  virtual void begin_step(double /*dt*/) {}
+  virtual void end_step(const Vector& /*u*/) {}
   virtual const Numbering& numbering() const = 0;
   virtual const PatternPtr& pattern() const = 0;
 };

@@ -37,7 +37,7 @@ void run_dynamic(Run& run) {
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);
-    const ScaledLoads loads{{&run.equations.loads(static_cast<int>(s)), 1.0}};
+    ScaledLoads loads{{&run.equations.loads(static_cast<int>(s)), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports.fixed);
@@ -45,9 +45,11 @@ void run_dynamic(Run& run) {
     if (s == 0 && !run.accept()) return;
     const double start = run.now.time;
     for (int k = 1; k <= step.count; ++k) {
+      const double time = start + k * step.dt;
+      loads.front().time = time;
       Increment increment{run.now.u,
                           supports.fixed,
-                          supports.at(static_cast<double>(k) / step.count),
+                          supports.at(static_cast<double>(k) / step.count, time),
                           loads,
                           kinematics(settings.integrator, run.now, supports.fixed, step.dt),
                           nullptr};
@@ -69,7 +71,7 @@ void run_dynamic(Run& run) {
       run.now.u = result.u;
       run.now.v = velocity;
       run.now.a = acceleration;
-      run.now.time = start + k * step.dt;
+      run.now.time = time;
       ++run.now.increment;
       run.set_reactions(supports.fixed);
       if (!run.accept()) return;

@@ -12,9 +12,11 @@ struct Path {
   const LoadSet* before;  ///< null in the first step
   const LoadSet* goal;
   Supports supports;
+  double start, duration;
+  double time(double share) const { return start + share * duration; }
   ScaledLoads loads(double share) const {
-    ScaledLoads loads{{goal, share}};
-    if (before && share < 1) loads.emplace_back(before, 1 - share);
+    ScaledLoads loads{{goal, share, time(share)}};
+    if (before && share < 1) loads.push_back({before, 1 - share, start});
     return loads;
   }
 };
@@ -27,7 +29,8 @@ IncrementResult advance(Run& run, const Path& path, double from, double to) {
   IncrementResult result;
   while (from < to) {
     const double share = std::min(to, from + piece) > to - 1e-12 ? to : from + piece;
-    Increment increment{run.now.u, path.supports.fixed, path.supports.at(share), path.loads(share), {}, nullptr};
+    Increment increment{
+        run.now.u, path.supports.fixed, path.supports.at(share, path.time(share)), path.loads(share), {}, nullptr};
     run.newton.prepare(run.now.u, increment.loads);
     result = run.newton.run(increment);
     if (result.stop == Stop::converged) {
@@ -59,8 +62,7 @@ void run_static(Run& run) {
     run.now.step = static_cast<int>(s);
     const Path path{s > 0 ? &run.equations.loads(static_cast<int>(s) - 1) : nullptr,
                     &run.equations.loads(static_cast<int>(s)),
-                    make_supports(step, run.equations.numbering(), run.now.u)};
-    const double start = run.now.time;
+                    make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
     for (int part = 1; part <= parts; ++part) {
       const double from = (part - 1.0) / parts, to = static_cast<double>(part) / parts;
       const Vector last_good = run.now.u;
@@ -70,7 +72,7 @@ void run_static(Run& run) {
       }
       run.newton.prepare(run.now.u, path.loads(to));
       run.newton.rest();
-      run.now.time = start + to * step.dt * step.count;
+      run.now.time = path.time(to);
       ++run.now.increment;
       run.set_reactions(path.supports.fixed);
       if (!run.accept()) return;

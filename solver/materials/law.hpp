@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The interface of a constitutive law: batches of points in, energies, stresses and tangents out.
 #pragma once
+#include <limits>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -30,6 +33,15 @@ struct Measures {
   Lanes energy;
 };
 
+class Law;
+
+/// A law taken apart: W = rest + modulus/2 g^2, where g(F) measures the volume change (ln J, J - 1, I3 - 1, tr H, …).
+struct Split {
+  std::shared_ptr<const Law> rest;        ///< W without its volumetric term
+  std::shared_ptr<const Law> constraint;  ///< g as if it were an energy: Response holds g, dg/dF and d2g/dF2
+  double modulus = std::numeric_limits<double>::infinity();  ///< stress; infinite if incompressible
+};
+
 /// A hyperelastic material law. Immutable, so that threads share it. One virtual call serves a whole batch.
 class Law {
  public:
@@ -43,6 +55,12 @@ class Law {
   virtual double shear_modulus() const = 0;  ///< of the small-strain limit, stress
   /// True if Want::tangent is the derivative of the stress; otherwise Newton's method converges, but not quadratically.
   virtual bool exact_tangent() const { return true; }
+  /// The law taken apart for elements that treat the volume change apart; nothing where it cannot be.
+  virtual std::optional<Split> split() const { return std::nullopt; }
+  /// True if energy and stress are finite and smooth where det F <= 0.
+  virtual bool survives_inversion() const { return false; }
+  /// Unknowns per node: 3 displacements, or 1 for a scalar problem, whose gradient is row 0 of H.
+  virtual int components() const { return 3; }
   virtual bool small_strain() const { return false; }  ///< true if the law is linear in H and sees no rotation
 };
 
