@@ -152,10 +152,10 @@ TEST(MeshVolumeFromVoxels, APartWithoutATetrahedronIsFoundMissingAndSeededAllOve
 TEST(MeshVolumeFromVoxels, MeetsTheCriteriaItIsGiven) {
   const Value mesh = run(tag, with(with(fine, "image", stored(two_blocks())), "cellRadiusEdgeRatio", 2.0));
   const auto measured = output<Mesh>(run("MeasureMeshQuality", {{"mesh", mesh}}));
-  for (const Field& field : measured->cell_fields) {
-    if (field.name == "radiusEdgeRatio")
-      EXPECT_LE(*std::max_element(field.values.begin(), field.values.end()), 2.0 + 1e-9);
-  }
+  const auto ratio = std::find_if(measured->cell_fields.begin(), measured->cell_fields.end(),
+                                  [](const Field& field) { return field.name == "radiusEdgeRatio"; });
+  ASSERT_NE(ratio, measured->cell_fields.end());
+  EXPECT_LE(*std::max_element(ratio->values.begin(), ratio->values.end()), 2.0 + 1e-9);
 }
 
 TEST(MeshVolumeFromVoxels, RefusesWhatIsNoLabelImage) {
