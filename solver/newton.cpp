@@ -119,7 +119,14 @@ LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vect
     multiply(*followers_, x, extra);
     y += extra;
   };
-  return solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
+  const LinearStatus status = solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
+  if (status == LinearStatus::done || status == LinearStatus::out_of_memory) return status;
+  // Far from the symmetric part, for instance where a pressure blows a thin wall up, only a factorisation of all helps.
+  BlockMatrix all = effective_;
+  add(all, 1, *followers_);
+  if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads);
+  const LinearStatus factored = unsymmetric_->factor(all, increment.fixed);
+  return factored == LinearStatus::done ? unsymmetric_->solve(right, tolerance, step) : factored;
 }
 
 LinearStatus Newton::direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,

@@ -76,6 +76,7 @@ class Newton {
   const Model& model_;
   const Equations& equations_;
   std::unique_ptr<LinearSystem> linear_;
+  std::unique_ptr<LinearSystem> unsymmetric_;  ///< takes over where follower pressure makes the iteration fail
   BlockMatrix tangent_, effective_;
   std::unique_ptr<BlockMatrix> followers_;  ///< stiffness of the follower pressure; null without
   Forces forces_;

@@ -2,39 +2,11 @@
 // Sparse Cholesky factorisation by CHOLMOD: analysed once per set of fixed unknowns, refactored for new values.
 #include <cholmod.h>
 
-#include <cmath>
-#include <mutex>
-
+#include "solver/linear/blas_threads.hpp"
 #include "solver/linear/linear_system.hpp"
-
-extern "C" {
-void openblas_set_num_threads(int threads);
-void omp_set_max_active_levels(int levels);
-}
 
 namespace msml::fe {
 namespace {
-
-/// OpenBLAS has as many threads as asked for while an object lives, and one elsewhere. The setting belongs to the
-/// process, so one factorisation runs at a time. CHOLMOD's own OpenMP loops, which ask for four threads wherever they
-/// run and spend more time waking them than working, run in the calling thread.
-class BlasThreads {
- public:
-  explicit BlasThreads(int threads) : lock_(mutex()) {
-    openblas_set_num_threads(threads);
-    omp_set_max_active_levels(0);
-  }
-  ~BlasThreads() { openblas_set_num_threads(1); }
-  BlasThreads(const BlasThreads&) = delete;
-  BlasThreads& operator=(const BlasThreads&) = delete;
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex one;
-    return one;
-  }
-  std::lock_guard<std::mutex> lock_;
-};
 
 class Cholesky final : public LinearSystem {
  public:
@@ -77,24 +49,8 @@ class Cholesky final : public LinearSystem {
   }
 
   LinearStatus solve(const Vector& b, double tolerance, Vector& x) override {
-    x = Vector::Zero(b.size());
-    if (lower_.size() == 0) return LinearStatus::done;
-    const double target = norm(b);
-    if (target == 0) return LinearStatus::done;
-    Vector residual = b, product;
-    double before = target;
-    // Round-off grows with the condition number; refinement wins it back unless the matrix is singular.
-    for (int refinement = 0; refinement < 4; ++refinement) {
-      if (!correct(residual, x)) return LinearStatus::out_of_memory;
-      multiply(*matrix_, x, product);
-      residual = b - product;
-      const double now = norm(residual);
-      if (!std::isfinite(now)) return LinearStatus::singular;
-      if (now <= tolerance * target) return LinearStatus::done;
-      if (refinement > 0 && now > 0.5 * before) break;
-      before = now;
-    }
-    return norm(residual) <= 1e-6 * target ? LinearStatus::done : LinearStatus::singular;
+    const auto correct = [this](const Vector& residual, Vector& sum) { return add_solution(residual, sum); };
+    return refine(*matrix_, lower_.unknown_of, correct, b, tolerance, x);
   }
 
   std::size_t factor_bytes() const override {
@@ -102,14 +58,8 @@ class Cholesky final : public LinearSystem {
   }
 
  private:
-  double norm(const Vector& v) const {
-    double sum = 0;
-    for (const int k : lower_.unknown_of) sum += v[k] * v[k];
-    return std::sqrt(sum);
-  }
-
   /// x += A^-1 residual on the free unknowns.
-  bool correct(const Vector& residual, Vector& x) {
+  bool add_solution(const Vector& residual, Vector& x) {
     const BlasThreads blas(1);
     std::vector<double> right(static_cast<std::size_t>(lower_.size()));
     for (std::size_t k = 0; k < right.size(); ++k) right[k] = residual[lower_.unknown_of[k]];

@@ -4,6 +4,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+
 namespace msml::fe {
 
 LowerTriangle lower_triangle(const Pattern& pattern, const Mask& fixed) {
@@ -40,6 +42,32 @@ void LowerTriangle::gather(const BlockMatrix& A, double* values) const {
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t k = range.begin(); k < range.end(); ++k) values[k] = A.values[source[k]];
                     });
+}
+
+LinearStatus refine(const BlockMatrix& A, const std::vector<int>& unknown_of,
+                    const std::function<bool(const Vector& residual, Vector& x)>& correct, const Vector& b,
+                    double tolerance, Vector& x) {
+  const auto norm = [&](const Vector& v) {
+    double sum = 0;
+    for (const int k : unknown_of) sum += v[k] * v[k];
+    return std::sqrt(sum);
+  };
+  x = Vector::Zero(b.size());
+  const double target = norm(b);
+  if (target == 0) return LinearStatus::done;
+  Vector residual = b, product;
+  double before = target;
+  for (int refinement = 0; refinement < 4; ++refinement) {
+    if (!correct(residual, x)) return LinearStatus::out_of_memory;
+    multiply(A, x, product);
+    residual = b - product;
+    const double now = norm(residual);
+    if (!std::isfinite(now)) return LinearStatus::singular;
+    if (now <= tolerance * target) return LinearStatus::done;
+    if (refinement > 0 && now > 0.5 * before) break;
+    before = now;
+  }
+  return norm(residual) <= 1e-6 * target ? LinearStatus::done : LinearStatus::singular;
 }
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Symmetric linear systems on the free unknowns of a block matrix.
+// Linear systems on the free unknowns of a block matrix.
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -25,7 +26,8 @@ LowerTriangle lower_triangle(const Pattern& pattern, const Mask& fixed);
 
 enum class LinearStatus { done, not_positive_definite, singular, limit, out_of_memory };
 
-/// One way to solve A x = b with A symmetric positive definite on the free unknowns.
+/// One way to solve A x = b on the free unknowns: Cholesky and conjugate gradients where A is symmetric positive
+/// definite, make_indefinite where it is symmetric, make_unsymmetric where it is neither.
 class LinearSystem {
  public:
   virtual ~LinearSystem() = default;
@@ -35,12 +37,25 @@ class LinearSystem {
   /// x at free unknowns so that |b - A x| <= tolerance |b| there; 0 at the others.
   virtual LinearStatus solve(const Vector& b, double tolerance, Vector& x) = 0;
   virtual std::size_t factor_bytes() const = 0;
+  /// Negative eigenvalues of the matrix factorised last (Sylvester's law of inertia); 0 unless made by make_indefinite.
+  virtual long negative_pivots() const { return 0; }
   long iterations = 0;   ///< CG iterations so far, over all solves
   bool gave_up = false;  ///< CG missed its tolerance once, and Cholesky has taken over
 };
 
 std::unique_ptr<LinearSystem> make_cholesky(int threads);
 std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner);
+/// L D L^T with pivots of order one and two, by MUMPS in the order of METIS; counts negative pivots and refuses a
+/// singular matrix, but never an indefinite one.
+std::unique_ptr<LinearSystem> make_indefinite(int threads);
+/// L U by MUMPS, for any matrix on the pattern.
+std::unique_ptr<LinearSystem> make_unsymmetric(int threads);
+
+/// x from b by a factorisation and steps of refinement: `correct` adds A^-1 residual to x and is false where it cannot.
+/// Round-off grows with the condition number; refinement wins it back unless the matrix is singular.
+LinearStatus refine(const BlockMatrix& A, const std::vector<int>& unknown_of,
+                    const std::function<bool(const Vector& residual, Vector& x)>& correct, const Vector& b,
+                    double tolerance, Vector& x);
 
 /// The system that the settings ask for. `automatic` factorises up to 600,000 unknowns and iterates above: there the
 /// factor of a tet10 mesh would pass about 16 GB. Up to that size conjugate gradients that miss their tolerance give
