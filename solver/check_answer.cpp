@@ -19,7 +19,7 @@ Vec3 sum(const Vector& v) {
 }
 
 void check_balance(const Run& run, const Mask& fixed, Check& check) {
-  const Forces& f = run.newton.forces();
+  const Forces& f = run.between ? *run.between : run.newton.forces();
   const Vector residual = f.residual();
   check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm()});
   if (check.load_scale > 0) check.residual = free_norm(residual, fixed) / check.load_scale;
@@ -112,7 +112,8 @@ Check check_answer(Run& run) {
   const bool good = run.outcome.stop == Stop::converged || run.outcome.stop == Stop::interrupted;
   if (good) check_balance(run, supports.fixed, check);
   check_deformation(run, check);
-  if (run.model.settings.integrator != Integrator::static_ && good) {
+  const Integrator integrator = run.model.settings.integrator;
+  if (is_dynamic(integrator) && !is_explicit(integrator) && good) {
     check.lowest_period = lowest_period(run, supports.fixed);
     if (run.model.settings.integrator == Integrator::implicit_euler && check.lowest_period > 0)
       check.damped_per_cycle = euler_loss_per_cycle(check.lowest_period, step.dt);

@@ -8,8 +8,8 @@ namespace msml::fe {
 namespace {
 
 std::string advice(const Run& run, Stop stop) {
-  const bool is_static = run.model.settings.integrator == Integrator::static_;
-  const std::string smaller = is_static ? "more loadSteps, or smaller loads" : "a smaller dt";
+  const bool loaded_in_parts = run.model.settings.integrator == Integrator::static_;
+  const std::string smaller = loaded_in_parts ? "more loadSteps, or smaller loads" : "a smaller dt";
   switch (stop) {
     case Stop::newton_limit:
       return "try " + smaller + ", or more newtonIterations";

@@ -29,9 +29,11 @@ Equations::Equations(const Model& model)
       elements_(make_elements(model)),
       X_(to_vector(elements_->numbering(), model.mesh->points)),
       mass_(elements_->pattern()) {
-  elements_->add_mass(settings_.lumped_mass && settings_.integrator != Integrator::static_, mass_);
+  elements_->add_mass((settings_.lumped_mass && is_dynamic(settings_.integrator)) || is_explicit(settings_.integrator),
+                      mass_);
   for (const Region& region : model.regions)
     if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
+  for (const Region& region : model.regions) has_history_ = has_history_ || !region.prony.tau.empty();
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
   for (const LoadSet& set : loads_) has_followers_ = has_followers_ || !set.followers.empty();
 }
@@ -45,9 +47,14 @@ double Equations::total_mass() const {
 void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent,
                          BlockMatrix* followers) const {
   forces.internal = Vector::Zero(size());
-  forces.external = Vector::Zero(size());
   if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
+  evaluate_loads(u, loads, forces, followers);
+}
+
+void Equations::evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces& forces,
+                               BlockMatrix* followers) const {
+  forces.external = Vector::Zero(size());
   if (followers) followers->set_zero();
   for (const auto& [set, scale, time] : loads) {
     forces.external += scale * set->dead;

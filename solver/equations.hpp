@@ -26,6 +26,7 @@ struct Kinematics {
   Mask fixed;                     ///< unknowns that follow `fixed_…` instead: their motion is given
   double dt = 0;                  ///< of fixed unknowns: v = (u - u0)/dt, a = (v - velocity_before)/dt
   Vector velocity_before;
+  double inertia_share = 1, force_share = 1;  ///< of the forces at the end of the step in the balance
   bool dynamic() const { return acceleration_factor > 0; }
   Vector velocity_at(const Vector& u) const;
   Vector acceleration_at(const Vector& u) const;
@@ -52,11 +53,18 @@ class Equations {
   double total_mass() const;
   bool small_strain() const { return small_strain_; }  ///< true if every region's law is
 
+  /// For materials with a history: before the increments of a time step of dt, and when its end at u is accepted.
+  void begin_step(double dt) { elements_->begin_step(dt); }
+  void end_step(const Vector& u) { elements_->end_step(u); }
+  bool has_history() const { return has_history_; }  ///< true if forces depend on more than displacement and time
+
   /// Internal and external forces at u; if given, `tangent` becomes the derivative of the internal forces (symmetric),
   /// `followers` that of minus the external ones (unsymmetric, zero without follower pressure).
   void evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent,
                 BlockMatrix* followers = nullptr) const;
   bool has_followers() const { return has_followers_; }  ///< true if a step has a follower pressure
+  /// The external forces alone.
+  void evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces& forces, BlockMatrix* followers) const;
   /// Inertia and Rayleigh damping alpha M v + beta K0 v; `K0` may be null where beta = 0.
   void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0, Forces& forces) const;
 
@@ -66,7 +74,7 @@ class Equations {
   Vector X_;
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;
-  bool small_strain_ = true, has_followers_ = false;
+  bool small_strain_ = true, has_followers_ = false, has_history_ = false;
 };
 
 }  // namespace msml::fe

@@ -28,7 +28,7 @@ std::string place(const Vec3& x) { return fmt::format("({:g} {:g} {:g})", x[0], 
 void check_region(const Model& model, const Region& region, CellKind& kind, bool& known) {
   const Mesh& mesh = *model.mesh;
   if (!region.law) throw Error(fmt::format("region '{}' has no material law", region.name));
-  const bool dynamic = model.settings.integrator != Integrator::static_;
+  const bool dynamic = is_dynamic(model.settings.integrator);
   if (!std::isfinite(region.density) || region.density < 0 || (dynamic && region.density == 0))
     throw Error(fmt::format("region '{}': massDensity = {} is not {}", region.name, region.density,
                             dynamic ? "> 0, as a dynamic simulation needs" : ">= 0"));
@@ -175,7 +175,7 @@ void Model::check() const {
   if (steps.empty()) throw Error("the simulation has no step");
   for (const Step& step : steps) {
     check_step(*this, step);
-    if (settings.integrator == Integrator::static_) check_held(*this, step);
+    if (!is_dynamic(settings.integrator)) check_held(*this, step);
   }
 }
 

@@ -97,7 +97,26 @@ struct Step {
   std::vector<FaceLoad> face_loads;
 };
 
-enum class Integrator { static_, implicit_euler, newmark };
+/// static_: equilibrium, loads ramped over each step. quasi_static: equilibrium at every time step, loads as they are
+/// at that time. The next three solve for the end of the time step; the last three are explicit and lump the mass.
+enum class Integrator {
+  static_,
+  quasi_static,
+  implicit_euler,
+  newmark,
+  generalized_alpha,
+  forward_euler,
+  symplectic_euler,
+  central_difference
+};
+bool is_dynamic(Integrator integrator);   ///< bodies have inertia
+bool is_explicit(Integrator integrator);  ///< no equations are solved; stable up to a largest time step
+const char* name(Integrator integrator);  ///< as the language spells it
+
+/// Where Newton's method takes the law's semidefinite tangent: where the law's own is not positive definite, in every
+/// iteration, or nowhere.
+enum class Definiteness { automatic, always, never };
+
 enum class LinearSolver { direct, cg, automatic };
 enum class Preconditioner { none, jacobi, block_jacobi, incomplete_cholesky, automatic };
 
@@ -114,7 +133,11 @@ struct Settings {
   double linear_tolerance = 1e-10;
   int load_steps = 1;  ///< static: the loads are applied in so many equal parts
   bool line_search = true;
-  bool allow_inverted = false;  ///< go on where an element of a finite-strain law inverts (det F <= 0)
+  Definiteness definiteness = Definiteness::automatic;
+  double newmark_beta = 0.25, newmark_gamma = 0.5;
+  double spectral_radius = 0.8;  ///< of generalized_alpha at infinite frequency, in [0, 1]
+  bool allow_unstable = false;   ///< run explicit methods beyond their stable time step
+  bool allow_inverted = false;   ///< go on where an element of a finite-strain law inverts (det F <= 0)
   int threads = 1;
 };
 
@@ -183,7 +206,9 @@ enum class Stop {
   linear_solver_limit,
   singular,
   interrupted,
-  out_of_memory
+  out_of_memory,
+  collapsed,      ///< equilibrium with det F <= 0 in a law that survives inversion
+  unstable_step,  ///< an explicit method with too large a time step
 };
 const char* name(Stop stop);
 
@@ -195,6 +220,8 @@ struct Outcome {
   std::string diagnosis;  ///< step, residual history, worst element with its place, what to try; "" if converged
   State state;            ///< the last good state
   Check check;            ///< of that state
+  double stable_step = std::numeric_limits<double>::infinity();  ///< of explicit methods: the smallest estimate
+  std::vector<std::string> notes;                                ///< what was decided on the way, in plain words
   long unknowns = 0;
   int newton_iterations = 0, linear_solves = 0;
   long cg_iterations = 0;

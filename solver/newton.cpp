@@ -41,13 +41,6 @@ Stop stop_of(LinearStatus status) {
 
 }  // namespace
 
-double free_norm(const Vector& v, const Mask& fixed) {
-  double sum = 0;
-  for (Eigen::Index k = 0; k < v.size(); ++k)
-    if (!fixed[static_cast<std::size_t>(k)]) sum += v[k] * v[k];
-  return std::sqrt(sum);
-}
-
 Newton::Newton(const Model& model, const Equations& equations)
     : model_(model),
       equations_(equations),
@@ -73,18 +66,10 @@ void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   tangent_current_ = true;
 }
 
-double Newton::round_off(const Vector& u) const {
-  // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1: times the stiffness.
-  const Points& points = model_.mesh->points;
-  const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
-  const double size = equations_.small_strain() ? 0 : std::cbrt(extent.prod() / effective_.pattern->nodes());
-  double sum = 0;
-  for (const int p : effective_.pattern->diagonal)
-    for (int i = 0; i < 3; ++i) {
-      const double k = effective_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
-      sum += k * k;
-    }
-  return 4e-16 * std::sqrt(sum) * (size + u.cwiseAbs().maxCoeff());
+void Newton::look(const Vector& u, const ScaledLoads& loads) {
+  const Stopwatch watch(seconds_assembly_);
+  equations_.evaluate(u, loads, Want::stress, forces_, nullptr);
+  tangent_current_ = false;
 }
 
 void Newton::stiffness(const Vector& u, BlockMatrix& K) {
@@ -94,8 +79,11 @@ void Newton::stiffness(const Vector& u, BlockMatrix& K) {
 }
 
 Vector Newton::residual(const Increment& increment) const {
-  if (increment.allowed.size() == 0) return forces_.residual();
-  return forces_.residual() - increment.allowed;
+  const Kinematics& motion = increment.motion;
+  Vector residual = motion.force_share * (forces_.external - forces_.internal - forces_.damping) -
+                    motion.inertia_share * forces_.inertia;
+  if (increment.offset.size() > 0) residual -= increment.offset;
+  return residual;
 }
 
 LinearStatus Newton::factor(const Increment& increment) {
@@ -103,7 +91,9 @@ LinearStatus Newton::factor(const Increment& increment) {
   const Settings& settings = model_.settings;
   effective_.values = tangent_.values;
   if (motion.dynamic()) {
-    add(effective_, motion.acceleration_factor + motion.velocity_factor * settings.damping_mass, equations_.mass());
+    // Divided by force_share, so that the tangent is there as it is.
+    const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
+    add(effective_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
     if (increment.damping_matrix)
       add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
   }
@@ -139,7 +129,7 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
     const Stopwatch watch(seconds_linear_);
     LinearStatus status = factor(increment);
     if (status == LinearStatus::done) {
-      Vector right = residual, product;
+      Vector right = residual / increment.motion.force_share, product;
       if (jump.size() > 0) {
         multiply(tangent_, jump, product);
         right -= product;
@@ -158,61 +148,11 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   return LinearStatus::singular;  // a semidefinite matrix without a factorisation
 }
 
-double Newton::line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u) {
-  const Vector start = u;
-  const double norm = free_norm(residual, increment.fixed), slope = dot(direction, residual);
-  double step = 1;
-  for (int trial = 0; trial < 12; ++trial) {
-    u = start + step * direction;
-    evaluate(increment, u, want_, false);
-    const Vector now = this->residual(increment);
-    const double new_norm = free_norm(now, increment.fixed);
-    const double new_slope = dot(direction, now);
-    if (!forces_.found.finite || !std::isfinite(new_norm)) {
-      step *= 0.25;
-      continue;
-    }
-    // Either the residual shrinks, or the minimum along the direction is not overshot by much. A follower pressure has
-    // no energy to search, and in slender bodies the residual grows before it falls.
-    if (!searching_ || followers_ || new_norm <= norm || new_slope >= -0.8 * std::abs(slope)) return step;
-    step *= std::clamp(slope / (slope - new_slope), 0.1, 0.6);
-  }
-  return forces_.found.finite ? step : 0;
-}
-
-void Newton::note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const {
-  const double norm = free_norm(residual, increment.fixed), total = residual.norm();
-  result.residuals.push_back(norm);
-  const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
-  result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
-  result.worst_element = forces_.found.smallest_J_element;
-  result.worst_J = forces_.found.smallest_J;
-  double worst = -1;
-  for (Eigen::Index k = 0; k < residual.size(); ++k)
-    if (!increment.fixed[static_cast<std::size_t>(k)] && std::abs(residual[k]) > worst) {
-      worst = std::abs(residual[k]);
-      result.worst_node = equations_.numbering().node_of[static_cast<std::size_t>(k / 3)];
-    }
-}
-
-bool Newton::accepted(const IncrementResult& result) const {
-  const double norm = result.residuals.back();
-  return std::isfinite(norm) && std::isfinite(result.scale) &&
-         norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
-}
-
 void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix) {
   equations_.evaluate_motion(velocity, acceleration, damping_matrix, forces_);
 }
 
 void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations_.size()); }
-
-Stop Newton::state_verdict() const {
-  if (!forces_.found.finite) return Stop::diverged;
-  if (!equations_.small_strain() && forces_.found.smallest_J <= 0 && !model_.settings.allow_inverted)
-    return Stop::inverted_element;
-  return Stop::converged;
-}
 
 Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
   const Stop state = state_verdict();
@@ -235,7 +175,10 @@ IncrementResult Newton::run(const Increment& increment) {
   Vector jump = Vector::Zero(u.size());
   for (Eigen::Index k = 0; k < u.size(); ++k)
     if (increment.fixed[static_cast<std::size_t>(k)]) jump[k] = increment.target[k] - u[k];
-  if (!tangent_current_) prepare(u, increment.loads);
+  if (tangent_current_)
+    equations_.evaluate_loads(u, increment.loads, forces_, followers_.get());
+  else
+    prepare(u, increment.loads);
   indefinite_ = false;
   // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
   equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
@@ -274,42 +217,6 @@ IncrementResult Newton::run(const Increment& increment) {
   return result;
 }
 
-IncrementResult Newton::walk(const Increment& increment) {
-  const auto final = [this](const IncrementResult& result) {
-    return result.stop == Stop::converged || result.stop == Stop::singular || result.stop == Stop::out_of_memory ||
-           model_.settings.newton_iterations == 1;
-  };
-  searching_ = false;
-  IncrementResult direct = run(increment);
-  searching_ = model_.settings.line_search;
-  if (!final(direct) && searching_) {
-    tangent_current_ = false;
-    direct = run(increment);
-  }
-  if (final(direct)) return direct;
-  evaluate(increment, increment.start, want_, false);
-  const Vector unbalanced = this->residual(increment);
-  Increment part = increment;
-  double share = 0, piece = 0.25;
-  IncrementResult result = direct;
-  while (share < 1 && piece > 1e-3) {
-    const double next = std::min(1.0, share + piece);
-    part.target = increment.start + next * (increment.target - increment.start);
-    part.allowed = (1 - next) * unbalanced;
-    tangent_current_ = false;
-    result = run(part);
-    if (result.stop == Stop::converged) {
-      part.start = result.u;
-      share = next;
-      piece *= 2;
-    } else {
-      piece /= 2;
-    }
-  }
-  tangent_current_ = false;
-  return result;
-}
-
 Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed) {
   prepare(u, loads);
   equations_.evaluate_motion(v, Vector::Zero(u.size()), &tangent_, forces_);
@@ -321,18 +228,6 @@ Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const Scal
   forces_.inertia.setZero();
   multiply(equations_.mass(), a, forces_.inertia);
   return a;
-}
-
-void Newton::report(Outcome& outcome) const {
-  outcome.newton_iterations = iterations_;
-  outcome.linear_solves = solves_;
-  outcome.cg_iterations = linear_->iterations;
-  outcome.cg_gave_up = linear_->gave_up;
-  outcome.seconds_assembly = seconds_assembly_;
-  outcome.seconds_linear = seconds_linear_;
-  outcome.matrix_bytes = (tangent_.values.size() + effective_.values.size()) * sizeof(double) +
-                         tangent_.pattern->columns.size() * sizeof(int);
-  outcome.factor_bytes = linear_->factor_bytes();
 }
 
 }  // namespace msml::fe

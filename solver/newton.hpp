@@ -14,7 +14,7 @@ struct Increment {
   ScaledLoads loads;
   Kinematics motion;
   const BlockMatrix* damping_matrix = nullptr;  ///< K at the start of the step, for Rayleigh damping; null without
-  Vector allowed = {};                          ///< residual to end with instead of zero, see walk(); empty: zero
+  Vector offset = {};  ///< residual to end with: minus what the start of the step puts into the balance; empty: zero
 };
 
 /// How it went.
@@ -43,8 +43,11 @@ class Newton {
   /// double on success (at least 2^-10).
   IncrementResult walk(const Increment& increment);
 
-  /// Forces and tangent at u for the next increment, with the tangent that increments start from.
+  /// Forces and tangent at u, which the next increment starts from unless forget() is called.
   void prepare(const Vector& u, const ScaledLoads& loads);
+  /// Forces at u alone.
+  void look(const Vector& u, const ScaledLoads& loads);
+  void forget() { tangent_current_ = false; }
   /// The semidefinite stiffness at u, for Rayleigh damping: an indefinite one would feed energy in.
   void stiffness(const Vector& u, BlockMatrix& K);
   /// Adds inertia and damping to the forces, or none.
@@ -54,6 +57,8 @@ class Newton {
   Stop state_verdict() const;
   /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
   Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed);
+  /// What is missing in the balance of an increment with the forces that were last evaluated.
+  Vector residual(const Increment& increment) const;
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
   const BlockMatrix& tangent() const { return tangent_; }
   LinearSystem& linear() { return *linear_; }
@@ -65,7 +70,6 @@ class Newton {
   LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);
-  Vector residual(const Increment& increment) const;
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   bool accepted(const IncrementResult& result) const;

@@ -13,74 +13,38 @@
 namespace msml::fe {
 namespace {
 
-State state_of(const Numbering& numbering, const Motion& now) {
-  return {now.time,
-          now.step,
-          now.increment,
-          to_points(numbering, now.u),
-          to_points(numbering, now.v),
-          to_points(numbering, now.a),
-          to_points(numbering, now.reaction)};
+void integrate(Run& run) {
+  switch (run.model.settings.integrator) {
+    case Integrator::static_:
+      return run_static(run);
+    case Integrator::quasi_static:
+      return run_quasi_static(run);
+    case Integrator::forward_euler:
+    case Integrator::symplectic_euler:
+    case Integrator::central_difference:
+      return run_explicit(run);
+    default:
+      return run_implicit(run);
+  }
 }
 
 Outcome run_model(const Model& model, const Observer& observer) {
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
-  const Equations equations(model);
+  Equations equations(model);
   Newton newton(model, equations);
   const Vector zero = Vector::Zero(equations.size());
-  Run run{model, equations, newton, observer, outcome, {zero, zero, zero, zero, 0, 0, 0}, {}};
+  Run run{model, equations, newton, observer, outcome, {zero, zero, zero, zero}};
   outcome.seconds_setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  outcome.state = state_of(equations.numbering(), run.now);
-  if (model.settings.integrator == Integrator::static_)
-    run_static(run);
-  else
-    run_dynamic(run);
+  integrate(run);
   outcome.unknowns = count_unknowns(model, equations.numbering(), run.now.step);
   newton.report(outcome);
-  outcome.state = state_of(equations.numbering(), run.now);
+  outcome.state = run.state();
   outcome.check = check_answer(run);
   return outcome;
 }
 
 }  // namespace
-
-const char* name(Stop stop) {
-  switch (stop) {
-    case Stop::converged:
-      return "converged";
-    case Stop::newton_limit:
-      return "Newton iteration limit";
-    case Stop::diverged:
-      return "diverged";
-    case Stop::inverted_element:
-      return "inverted element";
-    case Stop::indefinite_tangent:
-      return "indefinite tangent";
-    case Stop::linear_solver_limit:
-      return "linear solver limit";
-    case Stop::singular:
-      return "singular matrix";
-    case Stop::interrupted:
-      return "interrupted";
-    case Stop::out_of_memory:
-      return "out of memory";
-  }
-  return "unknown";
-}
-
-bool Run::accept() {
-  if (!observer || observer(state_of(equations.numbering(), now))) return true;
-  outcome.stop = Stop::interrupted;
-  outcome.diagnosis = fmt::format("interrupted at time {:g}, after {} increments", now.time, now.increment);
-  return false;
-}
-
-void Run::set_reactions(const Mask& fixed) {
-  now.reaction = -newton.forces().residual();
-  for (std::size_t k = 0; k < fixed.size(); ++k)
-    if (!fixed[k]) now.reaction[static_cast<Eigen::Index>(k)] = 0;
-}
 
 Outcome solve(const Model& model, const Observer& observer) {
   model.check();

@@ -15,17 +15,6 @@ using Json = nlohmann::ordered_json;
 Json number(double x) { return std::isfinite(x) ? Json(x) : Json(nullptr); }
 Json vector(const Vec3& v) { return Json::array({number(v[0]), number(v[1]), number(v[2])}); }
 
-const char* name(fe::Integrator integrator) {
-  switch (integrator) {
-    case fe::Integrator::static_:
-      return "static";
-    case fe::Integrator::implicit_euler:
-      return "dynamicImplicitEuler";
-    default:
-      return "Newmark";
-  }
-}
-
 const char* name(fe::LinearSolver solver) {
   switch (solver) {
     case fe::LinearSolver::direct:
@@ -92,7 +81,7 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   const bool balanced = outcome.stop == fe::Stop::converged || outcome.stop == fe::Stop::interrupted;
   std::string text = fmt::format("check of '{}' at t = {:.6g}", simulation.name, outcome.state.time);
   text += balanced ? "\n" : fmt::format(", the last good state (stopped: {})\n", fe::name(outcome.stop));
-  if (balanced) text += balance_text(check, simulation.model.settings.integrator != fe::Integrator::static_);
+  if (balanced) text += balance_text(check, fe::is_dynamic(simulation.model.settings.integrator));
   text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));
   text += line("mass", fmt::format("{:.6g}", check.mass));
   text +=
@@ -157,7 +146,7 @@ std::string settings_json(const Simulation& simulation) {
                     {"compiler", __VERSION__}}},
                   {"mesh", simulation.body.mesh->summary()},
                   {"elements", msml::name(simulation.body.kind)},
-                  {"timeIntegration", name(settings.integrator)},
+                  {"timeIntegration", fe::name(settings.integrator)},
                   {"linearSolver", name(settings.linear_solver)},
                   {"preconditioner", name(settings.preconditioner)},
                   {"dampingRayleighRatioMass", number(settings.damping_mass)},

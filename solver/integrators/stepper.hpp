@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What every integrator does: walk through the steps, report states, explain failures.
 #pragma once
+#include <optional>
+
 #include "solver/newton.hpp"
 
 namespace msml::fe {
@@ -11,30 +13,63 @@ struct Motion {
   Vector reaction;  ///< force of the constraint on the body; zero at free unknowns
   double time = 0;
   int step = 0, increment = 0;
+  Energies energies = {};
 };
 
 /// Everything that an integrator works with.
 struct Run {
   const Model& model;
-  const Equations& equations;
+  Equations& equations;
   Newton& newton;
   const Observer& observer;
   Outcome& outcome;
   Motion now;
-  std::vector<double> residuals;  ///< of the increment that failed
+  std::vector<double> residuals = {};            ///< of the increment that failed
+  Vector pull_before = {}, damping_before = {};  ///< external and support forces, damping forces at the last mark
+  std::optional<Forces> between = {};            ///< balanced forces, where these are not those at the present time
+
+  State state() const;
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
-  /// Reactions from the forces that were last evaluated.
-  void set_reactions(const Mask& fixed);
+  /// Reactions that balance a residual.
+  void set_reactions(const Vector& residual, const Mask& fixed);
+  /// Work and loss from u_before to the present state by the trapezoidal rule, with the forces at the last mark and
+  /// those that Newton evaluated last. Marks.
+  void account(const Vector& u_before);
+  /// The present forces are those that the next account starts from; energies are measured.
+  void mark();
+
+ private:
+  void measure_energies();
 };
+
+/// The way of loads and supports over a step, or a part of it, for equilibrium without inertia.
+struct EquilibriumPath {
+  std::function<ScaledLoads(double share)> loads;  ///< at a share of the path in (0, 1]
+  Supports supports;
+  double start, duration;  ///< time
+  double time(double share) const { return start + share * duration; }
+};
+
+/// Goes along a path from one share to another, in halved pieces where Newton's method fails; at most 2^6 pieces.
+/// False if that fails: the outcome is explained then, and the present state is the one before.
+bool advance(Run& run, const EquilibriumPath& path, double from, double to);
 
 /// Load steps to equilibrium; see static.cpp.
 void run_static(Run& run);
-/// Implicit Euler or Newmark (average acceleration); see dynamic.cpp.
-void run_dynamic(Run& run);
+/// Equilibrium at each time step; see quasi_static.cpp.
+void run_quasi_static(Run& run);
+/// Time steps with equations to solve; see implicit.cpp.
+void run_implicit(Run& run);
+
+/// Time steps without equations to solve; see explicit.cpp.
+void run_explicit(Run& run);
+
+/// How an implicit method ties velocity and acceleration to the displacement at the end of a step of dt.
+Kinematics kinematics(const Settings& settings, const Motion& now, const Mask& fixed, double dt);
 
 /// Sets Outcome::stop and a diagnosis in plain words from an increment that failed.
-/// `share` is the share of the loads (statics) that was tried; negative in dynamics.
+/// `share` is the share of the loads (statics) that was tried; negative where time is what counts.
 void explain(Run& run, const IncrementResult& result, double share);
 
 }  // namespace msml::fe

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forward Euler, symplectic Euler and central differences: no equations to solve, but a largest stable time step.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "solver/integrators/stepper.hpp"
+#include "solver/stable_step.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int watch_every = 100;  // time steps between estimates of the stable one, where the stiffness may change
+
+struct Explicit {
+  Run& run;
+  BlockMatrix K0;  ///< semidefinite stiffness, for Rayleigh damping and the stable step
+
+  bool damped() const { return run.model.settings.damping_stiffness > 0; }
+
+  /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given.
+  void balance(const Vector& u, const Vector& damping_velocity, const ScaledLoads& loads, const Mask& fixed,
+               Vector& a) {
+    run.newton.look(u, loads);
+    run.newton.move(damping_velocity, Vector::Zero(u.size()), damped() ? &K0 : nullptr);
+    const Vector force = run.newton.forces().residual();
+    const ScalarMatrix& mass = run.equations.mass();
+    for (Eigen::Index k = 0; k < a.size(); ++k)
+      if (!fixed[static_cast<std::size_t>(k)])
+        a[k] =
+            force[k] / mass.values[static_cast<std::size_t>(mass.pattern->diagonal[static_cast<std::size_t>(k / 3)])];
+    run.newton.move(damping_velocity, a, damped() ? &K0 : nullptr);
+  }
+
+  /// False if dt is too large for the present stiffness and the scene does not allow that.
+  bool stable(const Step& step, const Mask& fixed) {
+    const Settings& settings = run.model.settings;
+    if (settings.allow_unstable) return true;
+    if (!damped()) run.newton.stiffness(run.now.u, K0);
+    const double largest = largest_eigenvalue(K0, run.equations.mass(), fixed);
+    const double limit = stable_step(settings.integrator, largest, settings.damping_mass, settings.damping_stiffness);
+    run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
+    if (step.dt <= limit * (1 + 1e-6)) return true;
+    refuse(step, limit, std::sqrt(largest));
+    return false;
+  }
+
+  void refuse(const Step& step, double limit, double frequency) {
+    Outcome& outcome = run.outcome;
+    outcome.stop = Stop::unstable_step;
+    const std::string method = name(run.model.settings.integrator);
+    const bool never = limit <= 0;
+    const std::string bound =
+        never ? "at any dt without damping (with damping up to 2 zeta/omega)"
+              : fmt::format("above {:.4g}, as the highest frequency of the mesh is {:.4g} rad/time", limit, frequency);
+    const std::string advice =
+        never ? "add damping, or take symplecticEuler or an implicit timeIntegration"
+              : fmt::format(
+                    "take dt <= {:.3g} (and more iterations), an implicit timeIntegration, or a mesh without "
+                    "small or flat elements",
+                    0.95 * limit);
+    outcome.diagnosis = fmt::format(
+        "step {} '{}' {} time {:g}: dt = {:g}, but {} is unstable {}; {}; allowUnstable=\"true\" runs it "
+        "all the same",
+        run.now.step + 1, step.name, run.now.increment == 0 ? "was not begun at" : "stopped at", run.now.time, step.dt,
+        method, bound, advice);
+  }
+
+  bool advance(const Step& step, const Supports& supports, int k, ScaledLoads& loads, double time) {
+    const Integrator method = run.model.settings.integrator;
+    const Motion before = run.now;
+    Motion& now = run.now;
+    const double dt = step.dt;
+    const bool centred = method == Integrator::central_difference;
+    run.equations.begin_step(dt);
+    if (damped()) run.newton.stiffness(now.u, K0);
+    if (method == Integrator::forward_euler) now.u += dt * now.v;
+    now.v += (centred ? 0.5 * dt : dt) * now.a;
+    if (method != Integrator::forward_euler) now.u = before.u + dt * now.v;
+    const Vector target = supports.at(static_cast<double>(k) / step.count, time);
+    for (Eigen::Index i = 0; i < target.size(); ++i)
+      if (supports.fixed[static_cast<std::size_t>(i)]) {
+        now.u[i] = target[i];
+        now.v[i] = (target[i] - before.u[i]) / dt;
+        now.a[i] = (now.v[i] - before.v[i]) / dt;
+      }
+    now.time = loads.front().time = time;
+    balance(now.u, now.v, loads, supports.fixed, now.a);
+    if (centred)
+      for (Eigen::Index i = 0; i < target.size(); ++i)
+        if (!supports.fixed[static_cast<std::size_t>(i)]) now.v[i] += 0.5 * dt * now.a[i];
+    if (!sound(step, before)) return false;
+    ++now.increment;
+    run.set_reactions(run.newton.forces().residual(), supports.fixed);
+    run.account(before.u);
+    run.equations.end_step(now.u);
+    return true;
+  }
+
+  /// False where the state cannot be gone on from; the one before is kept then.
+  bool sound(const Step& step, const Motion& before) {
+    IncrementResult result;
+    result.worst_element = run.newton.forces().found.smallest_J_element;
+    result.worst_J = run.newton.forces().found.smallest_J;
+    result.stop = run.newton.state_verdict();
+    if (!run.now.a.allFinite() || !run.now.u.allFinite()) result.stop = Stop::diverged;
+    if (result.stop == Stop::converged) return true;
+    run.now = before;
+    explain(run, result, -1);
+    if (run.outcome.stable_step < step.dt || run.model.settings.allow_unstable)
+      run.outcome.diagnosis += "; the time step is beyond the stable one or was not checked";
+    return false;
+  }
+};
+
+}  // namespace
+
+void run_explicit(Run& run) {
+  const Model& model = run.model;
+  Explicit method{run, BlockMatrix(run.newton.tangent().pattern)};
+  for (std::size_t s = 0; s < model.steps.size(); ++s) {
+    const Step& step = model.steps[s];
+    run.now.step = static_cast<int>(s);
+    const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+    ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
+    run.newton.stiffness(run.now.u, method.K0);
+    run.now.a.setZero();
+    method.balance(run.now.u, run.now.v, loads, supports.fixed, run.now.a);
+    run.set_reactions(run.newton.forces().residual(), supports.fixed);
+    run.mark();
+    if (!method.stable(step, supports.fixed)) return;
+    if (s == 0 && !run.accept()) return;
+    const double start = run.now.time;
+    for (int k = 1; k <= step.count; ++k) {
+      if (!method.advance(step, supports, k, loads, start + k * step.dt)) return;
+      if (!run.accept()) return;
+      if (k % watch_every == 0 && !run.equations.small_strain() && !method.stable(step, supports.fixed)) return;
+    }
+  }
+}
+
+}  // namespace msml::fe

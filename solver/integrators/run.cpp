@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bookkeeping that integrators share: states, reactions, energies.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "solver/integrators/stepper.hpp"
+
+namespace msml::fe {
+
+State Run::state() const {
+  const Numbering& numbering = equations.numbering();
+  return {now.time,
+          now.step,
+          now.increment,
+          to_points(numbering, now.u),
+          to_points(numbering, now.v),
+          to_points(numbering, now.a),
+          to_points(numbering, now.reaction),
+          now.energies};
+}
+
+bool Run::accept() {
+  if (!observer || observer(state())) return true;
+  outcome.stop = Stop::interrupted;
+  outcome.diagnosis = fmt::format("interrupted at time {:g}, after {} increments", now.time, now.increment);
+  return false;
+}
+
+void Run::set_reactions(const Vector& residual, const Mask& fixed) {
+  now.reaction = -residual;
+  for (std::size_t k = 0; k < fixed.size(); ++k)
+    if (!fixed[k]) now.reaction[static_cast<Eigen::Index>(k)] = 0;
+}
+
+void Run::mark() {
+  const Forces& forces = newton.forces();
+  pull_before = forces.external + now.reaction;
+  damping_before = forces.damping;
+  measure_energies();
+}
+
+void Run::account(const Vector& u_before) {
+  const Forces& forces = newton.forces();
+  const Vector moved = now.u - u_before;
+  now.energies.external_work += 0.5 * dot(moved, pull_before + forces.external + now.reaction);
+  now.energies.dissipated += 0.5 * dot(moved, damping_before + forces.damping);
+  mark();
+}
+
+void Run::measure_energies() {
+  Energies& energies = now.energies;
+  energies.elastic = newton.forces().found.energy;
+  Vector p;
+  multiply(equations.mass(), now.v, p);
+  energies.kinetic = 0.5 * dot(now.v, p);
+  energies.momentum = energies.angular_momentum = Vec3::Zero();
+  const Vector& X = equations.positions();
+  for (Eigen::Index k = 0; k < p.size(); k += 3) {
+    const Vec3 x = X.segment<3>(k) + now.u.segment<3>(k), share = p.segment<3>(k);
+    energies.momentum += share;
+    energies.angular_momentum += x.cross(share);
+  }
+}
+
+}  // namespace msml::fe

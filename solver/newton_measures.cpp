@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How far an increment has come: norms, scales, verdicts and statistics.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/newton.hpp"
+
+namespace msml::fe {
+
+double free_norm(const Vector& v, const Mask& fixed) {
+  double sum = 0;
+  for (Eigen::Index k = 0; k < v.size(); ++k)
+    if (!fixed[static_cast<std::size_t>(k)]) sum += v[k] * v[k];
+  return std::sqrt(sum);
+}
+
+double Newton::round_off(const Vector& u) const {
+  // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1: times the stiffness.
+  const Points& points = model_.mesh->points;
+  const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
+  const double size = equations_.small_strain() ? 0 : std::cbrt(extent.prod() / effective_.pattern->nodes());
+  double sum = 0;
+  for (const int p : effective_.pattern->diagonal)
+    for (int i = 0; i < 3; ++i) {
+      const double k = effective_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
+      sum += k * k;
+    }
+  return 4e-16 * std::sqrt(sum) * (size + u.cwiseAbs().maxCoeff());
+}
+
+void Newton::note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const {
+  const double norm = free_norm(residual, increment.fixed), total = residual.norm();
+  result.residuals.push_back(norm);
+  const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
+  result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
+  result.worst_element = forces_.found.smallest_J_element;
+  result.worst_J = forces_.found.smallest_J;
+  double worst = -1;
+  for (Eigen::Index k = 0; k < residual.size(); ++k)
+    if (!increment.fixed[static_cast<std::size_t>(k)] && std::abs(residual[k]) > worst) {
+      worst = std::abs(residual[k]);
+      result.worst_node = equations_.numbering().node_of[static_cast<std::size_t>(k / 3)];
+    }
+}
+
+bool Newton::accepted(const IncrementResult& result) const {
+  const double norm = result.residuals.back();
+  return std::isfinite(norm) && std::isfinite(result.scale) &&
+         norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
+}
+
+Stop Newton::state_verdict() const {
+  if (!forces_.found.finite) return Stop::diverged;
+  if (!equations_.small_strain() && forces_.found.smallest_J <= 0 && !model_.settings.allow_inverted)
+    return Stop::inverted_element;
+  return Stop::converged;
+}
+
+void Newton::report(Outcome& outcome) const {
+  outcome.newton_iterations = iterations_;
+  outcome.linear_solves = solves_;
+  outcome.cg_iterations = linear_->iterations;
+  outcome.cg_gave_up = linear_->gave_up;
+  outcome.seconds_assembly = seconds_assembly_;
+  outcome.seconds_linear = seconds_linear_;
+  outcome.matrix_bytes = (tangent_.values.size() + effective_.values.size()) * sizeof(double) +
+                         tangent_.pattern->columns.size() * sizeof(int);
+  outcome.factor_bytes = linear_->factor_bytes();
+}
+
+}  // namespace msml::fe

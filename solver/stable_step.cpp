@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lanczos iterations and Schur's criterion.
+#include "solver/stable_step.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace msml::fe {
+namespace {
+
+constexpr int most_iterations = 120;
+
+/// 1/sqrt(m) at free unknowns, 0 at fixed ones.
+Vector inverse_roots(const ScalarMatrix& M, const Mask& fixed) {
+  Vector roots = Vector::Zero(static_cast<Eigen::Index>(fixed.size()));
+  for (std::size_t k = 0; k < fixed.size(); ++k) {
+    const double m = M.values[static_cast<std::size_t>(M.pattern->diagonal[k / 3])];
+    if (!fixed[k] && m > 0) roots[static_cast<Eigen::Index>(k)] = 1 / std::sqrt(m);
+  }
+  return roots;
+}
+
+/// A start without symmetry, the same in every run.
+Vector start(const Vector& roots) {
+  Vector q(roots.size());
+  for (Eigen::Index k = 0; k < q.size(); ++k)
+    q[k] = roots[k] > 0 ? std::sin(1.0 + 12.9898 * static_cast<double>(k % 100003)) : 0;
+  const double size = std::sqrt(dot(q, q));
+  return size > 0 ? Vector(q / size) : q;
+}
+
+}  // namespace
+
+double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mask& fixed) {
+  const Vector roots = inverse_roots(M, fixed);
+  Vector before = Vector::Zero(roots.size()), q = start(roots), w;
+  if (dot(q, q) == 0) return 0;
+  std::vector<double> diagonal, off;
+  double value = 0;
+  for (int j = 0; j < most_iterations; ++j) {
+    multiply(K, roots.cwiseProduct(q), w);
+    w = roots.cwiseProduct(w);
+    if (j > 0) w -= off.back() * before;
+    diagonal.push_back(dot(q, w));
+    w -= diagonal.back() * q;
+    const double beta = std::sqrt(dot(w, w));
+    const Eigen::Index n = static_cast<Eigen::Index>(diagonal.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+    solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), n),
+                                  Eigen::Map<Eigen::VectorXd>(off.data(), n - 1));
+    value = solver.eigenvalues()[n - 1];
+    // beta times the last component bounds the residual of the Ritz pair; the value is wrong by its square.
+    const double bound = beta * std::abs(solver.eigenvectors()(n - 1, n - 1));
+    if (!std::isfinite(value) || bound <= 1e-4 * value) break;
+    off.push_back(beta);
+    before = q;
+    q = w / beta;
+  }
+  return value;
+}
+
+double stable_step(Integrator integrator, double largest, double alpha, double beta) {
+  const double x = largest, c = alpha + beta * largest;
+  if (integrator != Integrator::forward_euler) {
+    // 4 - 2 c dt - x dt^2 > 0
+    if (x <= 0) return c > 0 ? 2 / c : std::numeric_limits<double>::infinity();
+    return 4 / (c + std::sqrt(c * c + 4 * x));
+  }
+  // x dt < c and 4 - 2 c dt + x dt^2 > 0 are linear in w^2: the ends of the spectrum decide.
+  double limit = alpha > 0 ? 2 / alpha : std::numeric_limits<double>::infinity();
+  if (x <= 0) return limit;
+  limit = std::min(limit, c / x);
+  if (c * c >= 4 * x) limit = std::min(limit, (c - std::sqrt(c * c - 4 * x)) / x);
+  return limit;
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The largest stable time step of the explicit methods.
+#pragma once
+#include "solver/linear/linear_system.hpp"
+#include "solver/model.hpp"
+
+namespace msml::fe {
+
+/// Largest eigenvalue w^2 of K x = w^2 M x on the free unknowns, from below, to a relative 1e-6 and better, by Lanczos
+/// iterations (Lanczos 1950, doi 10.6028/jres.045.026). M is diagonal with positive entries, K symmetric. 0 if all
+/// unknowns are fixed.
+double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mask& fixed);
+
+/// The largest time step at which no vibration x'' + (alpha + beta w^2) x' + w^2 x = 0, 0 <= w^2 <= largest, grows
+/// under an explicit method; infinite if largest = 0 and nothing damps. With c = alpha + beta w^2: symplectic Euler and
+/// central differences, the damping force taken half a step behind: dt < 2 (sqrt(1 + z^2) - z)/w with z = c/(2 w);
+/// forward Euler: dt < c/w^2 = 2 z/w, or, overdamped, dt < (c - sqrt(c^2 - 4 w^2))/w^2. Without damping 2/w and 0.
+/// (Schur's criterion on the amplification matrix of one step.)
+double stable_step(Integrator integrator, double largest, double alpha, double beta);
+
+}  // namespace msml::fe
