@@ -110,6 +110,19 @@ void check_positive(const char* what, double value, bool zero_allowed) {
     throw Error(fmt::format("{} = {} is not {}", what, value, zero_allowed ? ">= 0" : "> 0"));
 }
 
+void check_integrator(const Settings& s) {
+  check_positive("beta", s.newmark_beta, false);
+  check_positive("gamma", s.newmark_gamma, true);
+  if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
+    throw Error(fmt::format("spectralRadius = {} is not in [0, 1]", s.spectral_radius));
+  if (s.integrator != Integrator::newmark || s.allow_unstable) return;
+  if (s.newmark_gamma < 0.5 || 2 * s.newmark_beta < s.newmark_gamma)
+    throw Error(
+        fmt::format("Newmark with beta = {}, gamma = {} grows without bound at some time steps: take gamma >= 1/2 and "
+                    "beta >= gamma/2, or allowUnstable = true",
+                    s.newmark_beta, s.newmark_gamma));
+}
+
 void check_settings(const Settings& s) {
   check_positive("dampingRayleighRatioMass", s.damping_mass, true);
   check_positive("dampingRayleighRatioStiffness", s.damping_stiffness, true);
@@ -120,6 +133,7 @@ void check_settings(const Settings& s) {
   check_positive("newtonIterations", s.newton_iterations, false);
   check_positive("loadSteps", s.load_steps, false);
   check_positive("threads", s.threads, false);
+  check_integrator(s);
 }
 
 void check_nodes(const Mesh& mesh, const char* what, const std::string& label, const std::vector<int>& nodes,

@@ -51,9 +51,9 @@ double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mas
     solver.computeFromTridiagonal(Eigen::Map<Eigen::VectorXd>(diagonal.data(), n),
                                   Eigen::Map<Eigen::VectorXd>(off.data(), n - 1));
     value = solver.eigenvalues()[n - 1];
-    // beta times the last component bounds the residual of the Ritz pair; the value is wrong by its square.
+    // beta times the last component is the residual of the Ritz pair, which bounds the error of the value.
     const double bound = beta * std::abs(solver.eigenvectors()(n - 1, n - 1));
-    if (!std::isfinite(value) || bound <= 1e-4 * value) break;
+    if (!std::isfinite(value) || bound <= 1e-6 * value) break;
     off.push_back(beta);
     before = q;
     q = w / beta;

@@ -13,8 +13,24 @@ struct Keys {
   Key<std::string> integration, linear, preconditioner, unit, mass;
   Key<double> damping_mass, damping_stiffness, tolerance, linear_tolerance;
   Key<Integer> newton, load_steps, threads, old_threads;
-  Key<bool> line_search;
+  Key<bool> line_search, allow_unstable;
+  Key<double> beta, gamma, spectral_radius;
+  Key<std::string> definiteness;
 };
+
+const std::map<std::string, fe::Integrator>& integrators() {
+  static const std::map<std::string, fe::Integrator> known = [] {
+    std::map<std::string, fe::Integrator> names;
+    for (const fe::Integrator integrator :
+         {fe::Integrator::static_, fe::Integrator::quasi_static, fe::Integrator::implicit_euler,
+          fe::Integrator::newmark, fe::Integrator::generalized_alpha, fe::Integrator::forward_euler,
+          fe::Integrator::symplectic_euler, fe::Integrator::central_difference})
+      names[fe::name(integrator)] = integrator;
+    names["NewmarkShapeMatching"] = fe::Integrator::newmark;
+    return names;
+  }();
+  return known;
+}
 
 const std::map<std::string, fe::Preconditioner>& preconditioners() {
   static const std::map<std::string, fe::Preconditioner> known{
@@ -48,8 +64,10 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
   keys.integration = tag.parameter<std::string>(
       "timeIntegration",
       {.fallback = "dynamicImplicitEuler",
-       .choices = {"static", "dynamicImplicitEuler", "Newmark", "NewmarkShapeMatching"},
-       .doc = "Newmark: average acceleration (beta 1/4, gamma 1/2); NewmarkShapeMatching: the same"});
+       .choices = {"static", "quasiStatic", "dynamicImplicitEuler", "Newmark", "NewmarkShapeMatching",
+                   "generalizedAlpha", "forwardEuler", "symplecticEuler", "centralDifference"},
+       .doc = "static: loads ramped; quasiStatic: equilibrium at each time step; NewmarkShapeMatching: Newmark; the "
+              "last three are explicit, with lumped mass and a largest stable dt"});
   keys.linear = tag.parameter<std::string>(
       "linearSolver",
       {.fallback = "auto",
@@ -73,6 +91,20 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
       {.unit = "time", .range = nonnegative(), .fallback = 0.0, .doc = "damping matrix alpha M + beta K: beta"});
 }
 
+void describe_method_numbers(Factory<SettingsBuilder>& tag, Keys& keys) {
+  const fe::Settings usual;
+  keys.beta = tag.parameter("beta", {.range = positive(),
+                                     .fallback = usual.newmark_beta,
+                                     .doc = "of Newmark; 1/4 with gamma 1/2: average acceleration"});
+  keys.gamma = tag.parameter("gamma", {.range = closed(0, 1), .fallback = usual.newmark_gamma, .doc = "of Newmark"});
+  keys.spectral_radius = tag.parameter(
+      "spectralRadius", {.range = closed(0, 1),
+                         .fallback = usual.spectral_radius,
+                         .doc = "of generalizedAlpha: what a step leaves of the highest frequencies; 1: all"});
+  keys.allow_unstable = tag.parameter<bool>(
+      "allowUnstable", {.fallback = false, .doc = "run methods beyond their stable time step, to study them"});
+}
+
 void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
   const fe::Settings usual;
   keys.newton = tag.parameter<Integer>(
@@ -86,6 +118,11 @@ void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
                           .fallback = usual.linear_tolerance,
                           .doc = "of conjugate gradients: true residual over the right-hand side, from a zero start"});
   keys.line_search = tag.parameter<bool>("lineSearch", {.fallback = true, .doc = "shorten steps that do not descend"});
+  keys.definiteness = tag.parameter<std::string>(
+      "definiteness",
+      {.fallback = "auto",
+       .choices = {"auto", "always", "never"},
+       .doc = "a semidefinite tangent: where the exact one is indefinite, in each iteration, or never"});
   keys.load_steps = tag.parameter<Integer>(
       "loadSteps", {.range = closed(1, 100000), .fallback = 1, .doc = "static: equal parts that the loads come in"});
   keys.threads = tag.parameter<Integer>(
@@ -108,10 +145,7 @@ void note_old_names(const Record& record, const Keys& keys, Reporter& reporter) 
 fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, int threads) {
   note_old_names(record, keys, reporter);
   fe::Settings settings;
-  const std::string& integration = record[keys.integration];
-  settings.integrator = integration == "static"                 ? fe::Integrator::static_
-                        : integration == "dynamicImplicitEuler" ? fe::Integrator::implicit_euler
-                                                                : fe::Integrator::newmark;
+  settings.integrator = integrators().at(record[keys.integration]);
   const std::string& linear = record[keys.linear];
   settings.linear_solver = linear == "direct"                            ? fe::LinearSolver::direct
                            : linear == "auto" || linear == "iterativeCG" ? fe::LinearSolver::automatic
@@ -124,6 +158,13 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
   settings.tolerance = record[keys.tolerance];
   settings.linear_tolerance = record[keys.linear_tolerance];
   settings.line_search = record[keys.line_search];
+  settings.definiteness = record[keys.definiteness] == "auto"     ? fe::Definiteness::automatic
+                          : record[keys.definiteness] == "always" ? fe::Definiteness::always
+                                                                  : fe::Definiteness::never;
+  settings.newmark_beta = record[keys.beta];
+  settings.newmark_gamma = record[keys.gamma];
+  settings.spectral_radius = record[keys.spectral_radius];
+  settings.allow_unstable = record[keys.allow_unstable];
   settings.load_steps = static_cast<int>(record[keys.load_steps]);
   settings.threads = record.has(keys.threads)       ? static_cast<int>(record[keys.threads])
                      : record.has(keys.old_threads) ? static_cast<int>(record[keys.old_threads])
@@ -137,6 +178,7 @@ Factory<SettingsBuilder> solver() {
   Factory<SettingsBuilder> tag("solver", "solver", "How the equations are integrated and solved.");
   Keys keys;
   describe_method(tag, keys);
+  describe_method_numbers(tag, keys);
   describe_control(tag, keys);
   tag.build([=](const Record& record) -> SettingsBuilder {
     return [=, &record](Reporter& reporter, int threads) { return read(record, keys, reporter, threads); };

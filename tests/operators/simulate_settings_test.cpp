@@ -52,6 +52,11 @@ TEST(Solver, AttributesReachTheModel) {
                               {"linearTolerance", 1e-6},
                               {"lineSearch", false},
                               {"loadSteps", Integer{3}},
+                              {"definiteness", std::string("always")},
+                              {"beta", 0.3},
+                              {"gamma", 0.6},
+                              {"spectralRadius", 0.5},
+                              {"allowUnstable", true},
                               {"threads", Integer{4}}},
                              listener);
   EXPECT_EQ(made.integrator, fe::Integrator::static_);
@@ -65,7 +70,21 @@ TEST(Solver, AttributesReachTheModel) {
   EXPECT_EQ(made.linear_tolerance, 1e-6);
   EXPECT_FALSE(made.line_search);
   EXPECT_EQ(made.load_steps, 3);
+  EXPECT_EQ(made.definiteness, fe::Definiteness::always);
+  EXPECT_EQ(made.newmark_beta, 0.3);
+  EXPECT_EQ(made.newmark_gamma, 0.6);
+  EXPECT_EQ(made.spectral_radius, 0.5);
+  EXPECT_TRUE(made.allow_unstable);
   EXPECT_EQ(made.threads, 4);
+}
+
+TEST(Solver, EveryIntegratorHasItsName) {
+  for (const char* integration : {"static", "quasiStatic", "dynamicImplicitEuler", "Newmark", "generalizedAlpha",
+                                  "forwardEuler", "symplecticEuler", "centralDifference"}) {
+    Listener listener;
+    const auto made = settings({{"timeIntegration", std::string(integration)}}, listener);
+    EXPECT_STREQ(fe::name(made.integrator), integration);
+  }
 }
 
 TEST(Solver, OldNamesAreAcceptedWithANoteEach) {

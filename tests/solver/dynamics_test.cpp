@@ -5,63 +5,15 @@
 #include <cmath>
 #include <iostream>
 
+#include "msml/core/error.hpp"
 #include "solver/check_answer.hpp"
 #include "solver/equations.hpp"
-#include "tests/solver/meshes.hpp"
+#include "tests/solver/oscillator.hpp"
 
 namespace msml::fe {
 namespace {
 
 using namespace testing;
-
-/// One tetrahedron with unit edges along the axes and three nodes held; node 3 moves along z only. By hand:
-/// k = V (lambda + 2 mu) with V = 1/6; m = rho V / 10 consistent (2 rho V / 20), rho V / 4 lumped.
-struct Oscillator {
-  double k, m;
-  double omega() const { return std::sqrt(k / m); }
-  double period() const { return 2 * M_PI / omega(); }
-};
-
-constexpr double young = 100, poisson = 0.25, density = 3;
-
-Oscillator oscillator(bool lumped) {
-  const double mu = young / (2 * (1 + poisson)), lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson));
-  return {(lambda + 2 * mu) / 6, density / 6 / (lumped ? 4 : 10)};
-}
-
-/// The oscillator, pulled by a force f from t = 0 on.
-Model oscillator_model(Integrator integrator, bool lumped, double dt, int count, double f = 0.1) {
-  Mesh mesh;
-  mesh.points.resize(4, 3);
-  mesh.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
-  const int nodes[4] = {0, 1, 2, 3};
-  mesh.add_cell(CellKind::tet4, nodes);
-  Model model = make_model(std::move(mesh),
-                           {.youngs_modulus = young, .poisson_ratio = poisson, .strain = Strain::small}, density);
-  model.settings.integrator = integrator;
-  model.settings.lumped_mass = lumped;
-  model.settings.tolerance = 1e-12;
-  Step& step = model.steps[0];
-  step.dt = dt;
-  step.count = count;
-  step.prescribed = {fix({0, 1, 2}), fix({3}, true, true, false)};
-  step.forces = {{.name = "pull", .nodes = {3}, .values = {Vec3(0, 0, f)}}};
-  return model;
-}
-
-/// Error at t = 0.6 periods against u = f/k (1 - exp(-z w t) (cos wd t + z w / wd sin wd t)), relative to f/k.
-double error_at_end(Integrator integrator, bool lumped, int count, double alpha = 0, double beta = 0) {
-  const Oscillator o = oscillator(lumped);
-  const double end = 0.6 * o.period(), f = 0.1;
-  Model model = oscillator_model(integrator, lumped, end / count, count, f);
-  model.settings.damping_mass = alpha;
-  model.settings.damping_stiffness = beta;
-  const Outcome outcome = solve(model, {});
-  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
-  const double w = o.omega(), z = (alpha / w + beta * w) / 2, wd = w * std::sqrt(1 - z * z);
-  const double exact = f / o.k * (1 - std::exp(-z * w * end) * (std::cos(wd * end) + z * w / wd * std::sin(wd * end)));
-  return std::abs(outcome.state.displacement(3, 2) - exact) / (f / o.k);
-}
 
 TEST(ImplicitEuler, IsOfFirstOrderInTime) {
   for (const bool lumped : {false, true}) {
@@ -77,6 +29,59 @@ TEST(Newmark, IsOfSecondOrderInTime) {
         std::log2(error_at_end(Integrator::newmark, lumped, 50) / error_at_end(Integrator::newmark, lumped, 100));
     EXPECT_NEAR(order, 2, 0.05);
   }
+}
+
+TEST(GeneralizedAlpha, IsOfSecondOrderInTime) {
+  for (const bool lumped : {false, true}) EXPECT_NEAR(order_in_time(Integrator::generalized_alpha, lumped, 50), 2, 0.1);
+  EXPECT_NEAR(order_in_time(Integrator::generalized_alpha, false, 100, 1.0, 0.005), 2, 0.15);
+}
+
+// At dt far above the period one step multiplies the amplitude by the spectral radius, a double eigenvalue: after n
+// steps radius^n times a factor linear in n.
+TEST(GeneralizedAlpha, DampsTheHighestFrequenciesByTheSpectralRadius) {
+  const Oscillator o = oscillator(false);
+  const double dt = 1e4 * o.period();
+  for (const double radius : {0.5, 0.8, 0.95}) {
+    const std::size_t first = radius < 0.6 ? 20 : 40;
+    Model model = oscillator_model(Integrator::generalized_alpha, false, dt, static_cast<int>(2 * first));
+    model.settings.spectral_radius = radius;
+    std::vector<double> u;
+    const Outcome outcome = solve(model, [&](const State& state) {
+      u.push_back(std::hypot(state.displacement(3, 2) - 0.1 / o.k, state.velocity(3, 2) * dt));
+      return true;
+    });
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    const double steps = static_cast<double>(first), rate = std::pow(u[2 * first] / u[first], 1 / steps);
+    EXPECT_GT(rate, 0.98 * radius);
+    EXPECT_LT(rate, 1.02 * radius * std::pow(2, 1 / steps));
+  }
+}
+
+TEST(Newmark, WithOtherNumbersHasTheOrdersOfTheory) {
+  const auto order = [](double beta, double gamma) {
+    double error[2];
+    for (const int fine : {0, 1}) {
+      const Oscillator o = oscillator(true);
+      const int count = 200 * (1 + fine);
+      Model model = oscillator_model(Integrator::newmark, true, 0.6 * o.period() / count, count);
+      model.settings.newmark_beta = beta;
+      model.settings.newmark_gamma = gamma;
+      model.settings.allow_unstable = true;
+      error[fine] = std::abs(solve(model, {}).state.displacement(3, 2) - 0.1 / o.k * (1 - std::cos(1.2 * M_PI)));
+    }
+    return std::log2(error[0] / error[1]);
+  };
+  EXPECT_NEAR(order(1.0 / 6, 0.5), 2, 0.05);  // linear acceleration
+  EXPECT_NEAR(order(0.3025, 0.6), 1, 0.15);   // numerical damping costs an order
+}
+
+TEST(Newmark, NumbersThatGrowWithoutBoundAreRefused) {
+  Model model = oscillator_model(Integrator::newmark, true, 0.1, 1);
+  model.settings.newmark_beta = 1.0 / 6;
+  EXPECT_THROW(solve(model, {}), Error);
+  model.settings.newmark_beta = 0.25;
+  model.settings.newmark_gamma = 0.45;
+  EXPECT_THROW(solve(model, {}), Error);
 }
 
 TEST(RayleighDamping, FollowsTheExactDampedOscillator) {
@@ -192,7 +197,7 @@ TEST(Dynamics, PrescribedMotionHasItsVelocityAndPushesBack) {
 }
 
 TEST(Dynamics, ReactionsLoadsInertiaAndDampingBalance) {
-  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark})
+  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark, Integrator::generalized_alpha})
     for (const int iterations : {1, 25}) {
       Model model = beam_model(2, CellKind::tet10, 0.3, Strain::corotated);
       model.settings.integrator = integrator;
