@@ -150,8 +150,8 @@ void find_parts(LabelParts& out) {
 
 Vec3 centre(const LabelGrid& grid, std::size_t voxel) {
   const auto nx = static_cast<std::size_t>(grid.size[0]), ny = static_cast<std::size_t>(grid.size[1]);
-  return grid.spacing.cwiseProduct(Vec3(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
-                                        static_cast<double>(voxel / (nx * ny))));
+  const std::size_t i = voxel % nx, j = voxel / nx % ny, k = voxel / (nx * ny);
+  return grid.spacing.cwiseProduct(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)));
 }
 
 /// The segment, half a voxel long, on which the ray from a voxel's centre leaves the label.

@@ -32,8 +32,7 @@ std::string located(const Record& record);
 template <class Result>
 Result make(const Record& record) {
   const auto* factory = dynamic_cast<const Factory<Result>*>(record.description);
-  if (factory == nullptr)
-    throw Error(fmt::format("{} does not build what its place needs", record.tag()), record.where, Failure::internal);
+  if (factory == nullptr) throw Error("the tag does not build what its place needs", record.where, Failure::internal);
   return factory->make(record);
 }
 
