@@ -42,7 +42,8 @@ std::string element_text(const Run& run, const IncrementResult& result) {
   const Mesh& mesh = *run.model.mesh;
   const int* nodes = mesh.cell(result.worst_element);
   Vec3 centre = Vec3::Zero();
-  for (int a = 0; a < 4; ++a) centre += 0.25 * mesh.points.row(nodes[a]).transpose();
+  const int corners = corner_count(mesh.kinds[static_cast<std::size_t>(result.worst_element)]);
+  for (int a = 0; a < corners; ++a) centre += mesh.points.row(nodes[a]).transpose() / corners;
   return fmt::format("; worst element {} at ({:g} {:g} {:g}), det F = {:g}", result.worst_element, centre[0], centre[1],
                      centre[2], result.worst_J);
 }

@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 
+#include "solver/elements/region_laws.hpp"
 #include "solver/materials/polar.hpp"
 
 namespace msml::fe {
@@ -27,6 +28,16 @@ Mat3 at(const Tensor<Lanes>& a, int lane) {
 void add_six(const Tensor<Lanes>& a, int lane, double weight, double* out) {
   constexpr int place[6] = {0, 4, 8, 1, 5, 2};
   for (int k = 0; k < 6; ++k) out[k] += weight * a.c[place[k]][lane];
+}
+
+/// Volume, area or length of the cell between its corners, up to a factor that all cells of a kind share.
+double corner_volume(const Mesh& mesh, int cell) {
+  const int* nodes = mesh.cell(cell);
+  const int dimension = msml::dimension(mesh.kinds[static_cast<std::size_t>(cell)]);
+  Mat3 edges = Mat3::Identity();
+  for (int d = 0; d < dimension; ++d)
+    edges.col(d) = (mesh.points.row(nodes[d + 1]) - mesh.points.row(nodes[0])).transpose();
+  return std::abs(edges.topLeftCorner(dimension, dimension).determinant());
 }
 
 void measure_element(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
@@ -84,8 +95,10 @@ ElementResults element_results(const Model& model, const State& state) {
   arena.execute([&] {
     const std::vector<ElementPoints> points = elements->points(to_vector(numbering, state.displacement));
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t e) {
-      const Law& law = *model.regions[static_cast<std::size_t>(numbering.region_of[e])].law;
-      measure_element(points[e], law, static_cast<std::size_t>(numbering.elements[e]), results);
+      const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
+      const std::span<const Vec3> places(points[e].place, static_cast<std::size_t>(points[e].count));
+      const auto law = law_of_points(model, region, numbering.elements[e], places);
+      measure_element(points[e], *law, static_cast<std::size_t>(numbering.elements[e]), results);
     });
   });
   return results;
@@ -100,10 +113,7 @@ std::vector<double> recover_at_nodes(const Model& model, const std::vector<doubl
     std::vector<double> sums(points * width, 0), weights(points, 0);
     for (const int e : region.elements) {
       const int* nodes = mesh.cell(e);
-      Mat3 edges;
-      for (int d = 0; d < 3; ++d)
-        edges.col(d) = (mesh.points.row(nodes[d + 1]) - mesh.points.row(nodes[0])).transpose();
-      const double volume = std::abs(edges.determinant()) / 6;
+      const double volume = corner_volume(mesh, e);
       for (int a = 0; a < node_count(mesh.kinds[static_cast<std::size_t>(e)]); ++a) {
         const std::size_t n = static_cast<std::size_t>(nodes[a]);
         weights[n] += volume;

@@ -9,17 +9,17 @@
 
 #include "msml/core/error.hpp"
 #include "solver/conditions/rigid.hpp"
+#include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::fe {
 namespace {
 
-bool is_tet(CellKind kind) { return kind == CellKind::tet4 || kind == CellKind::tet10; }
-
 Vec3 centre(const Mesh& mesh, int cell) {
   Vec3 sum = Vec3::Zero();
-  for (int a = 0; a < 4; ++a) sum += 0.25 * mesh.points.row(mesh.cell(cell)[a]).transpose();
+  const int corners = corner_count(mesh.kinds[static_cast<std::size_t>(cell)]);
+  for (int a = 0; a < corners; ++a) sum += mesh.points.row(mesh.cell(cell)[a]).transpose() / corners;
   return sum;
 }
 
@@ -37,9 +37,9 @@ void check_region(const Model& model, const Region& region, CellKind& kind, bool
       throw Error(fmt::format("region '{}' names element {}, but the mesh has cells 0 to {}", region.name, e,
                               mesh.cell_count() - 1));
     const CellKind found = mesh.kinds[static_cast<std::size_t>(e)];
-    if (!is_tet(found))
-      throw Error(
-          fmt::format("region '{}' names cell {}, a {}; a material needs tet4 or tet10", region.name, e, name(found)));
+    if (found == CellKind::vertex)
+      throw Error(fmt::format("region '{}' names cell {}, a vertex; a material needs lines, triangles or tetrahedra",
+                              region.name, e));
     if (known && found != kind)
       throw Error(fmt::format("cell {} is a {}, others are {}: one mesh kind at a time", e, name(found), name(kind)));
     kind = found;
@@ -65,35 +65,101 @@ void check_regions(const Model& model) {
   if (!known) throw Error("no region has an element: nothing to simulate");
   int lost = 0, first = -1;
   for (int e = 0; e < mesh.cell_count(); ++e)
-    if (is_tet(mesh.kinds[static_cast<std::size_t>(e)]) && !owner[static_cast<std::size_t>(e)] && lost++ == 0)
+    if (mesh.kinds[static_cast<std::size_t>(e)] == kind && !owner[static_cast<std::size_t>(e)] && lost++ == 0)
       first = e;
   if (lost > 0)
-    throw Error(fmt::format("{} tetrahedra are in no material region, the first is element {} at {}", lost, first,
+    throw Error(fmt::format("{} {} are in no material region, the first is element {} at {}", lost,
+                            dimension(kind) == 3 ? "tetrahedra" : fmt::format("{} cells", name(kind)), first,
                             place(centre(mesh, first))));
 }
 
-/// Smallest det(dX/dxi) at the quadrature points and the corners, relative to the cube of the longest edge.
-template <int nodes>
+/// Lines must lie along x and triangles in a plane of constant z, since the solver takes the other coordinates as
+/// directions without displacement.
+void check_flat(const Model& model) {
+  const Mesh& mesh = *model.mesh;
+  int first = -1;
+  double size = 0;
+  for (const Region& region : model.regions)
+    for (const int e : region.elements) {
+      const int count = node_count(mesh.kinds[static_cast<std::size_t>(e)]);
+      const int* nodes = mesh.cell(e);
+      if (first < 0) first = nodes[0];
+      for (int a = 0; a < count; ++a)
+        size = std::max(size, (mesh.points.row(nodes[a]) - mesh.points.row(first)).cwiseAbs().maxCoeff());
+      for (int a = 0; a < count; ++a)
+        for (int c = dimension(element_kind(model)); c < 3; ++c)
+          if (std::abs(mesh.points(nodes[a], c) - mesh.points(first, c)) > 1e-9 * size)
+            throw Error(fmt::format(
+                "node {} at {} and node {} at {} differ in {}: {}", first, place(mesh.points.row(first).transpose()),
+                nodes[a], place(mesh.points.row(nodes[a]).transpose()), "xyz"[c],
+                dimension(element_kind(model)) == 1 ? "lines lie along x, with the same y and z"
+                                                    : "triangles as elements lie in a plane of the same z"));
+    }
+}
+
+/// Which model features fit together.
+void check_plane(const Model& model) {
+  const CellKind kind = element_kind(model);
+  if (!std::isfinite(model.thickness) || model.thickness <= 0)
+    throw Error(fmt::format("thickness = {} is not > 0", model.thickness));
+  if (model.plane == Plane::stress && dimension(kind) != 2)
+    throw Error(fmt::format("plane = stress is for triangles, the elements are {}", name(kind)));
+  const bool scalar = is_scalar(model);
+  for (const Region& region : model.regions)
+    if (!region.elements.empty() && (region.law->components() == 1) != scalar)
+      throw Error(fmt::format("region '{}' has a law of {} and another region one of {}: one kind of problem at a time",
+                              region.name, scalar ? "displacements" : "a scalar unknown",
+                              scalar ? "a scalar unknown" : "displacements"));
+  if (scalar && model.settings.integrator != Integrator::static_)
+    throw Error("a scalar problem (diffusion) is stationary: choose timeIntegration=\"static\"");
+}
+
+/// Smallest det(dX/dxi) at the quadrature points and the corners, relative to that power of the longest edge.
+template <int dimension, int nodes>
 double reference_shape(const Mesh& mesh, int cell) {
   const int* ids = mesh.cell(cell);
   double longest = 0, smallest = std::numeric_limits<double>::infinity();
-  for (int a = 0; a < 4; ++a)
+  for (int a = 0; a <= dimension; ++a)
     for (int b = 0; b < a; ++b) longest = std::max(longest, (mesh.points.row(ids[a]) - mesh.points.row(ids[b])).norm());
-  Rule<3> places = stiffness_rule<nodes>();
-  for (const auto& corner : {std::array<double, 3>{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
-    places.push_back({corner, 0});
-  for (const auto& q : places) smallest = std::min(smallest, jacobian<nodes>(mesh.points, ids, q.xi).determinant());
-  return longest > 0 ? smallest / (longest * longest * longest) : 0;
+  Rule<dimension> places = stiffness_rule<dimension, nodes>();
+  places.push_back({{}, 0});
+  for (std::size_t d = 0; d < dimension; ++d) {
+    places.push_back({{}, 0});
+    places.back().xi[d] = 1;
+  }
+  for (const auto& q : places)
+    smallest = std::min(smallest, jacobian<dimension, nodes>(mesh.points, ids, q.xi).determinant());
+  return longest > 0 ? smallest / std::pow(longest, dimension) : 0;
+}
+
+double reference_shape(const Mesh& mesh, int cell) {
+  switch (mesh.kinds[static_cast<std::size_t>(cell)]) {
+    case CellKind::line2:
+      return reference_shape<1, 2>(mesh, cell);
+    case CellKind::line3:
+      return reference_shape<1, 3>(mesh, cell);
+    case CellKind::tri3:
+      return reference_shape<2, 3>(mesh, cell);
+    case CellKind::tri6:
+      return reference_shape<2, 6>(mesh, cell);
+    case CellKind::tet4:
+      return reference_shape<3, 4>(mesh, cell);
+    default:
+      return reference_shape<3, 10>(mesh, cell);
+  }
 }
 
 void check_shapes(const Model& model) {
   const Mesh& mesh = *model.mesh;
+  constexpr const char* powers[] = {"", "that", "the square", "the cube"};
+  constexpr const char* hints[] = {"", "; lines run from small to large x",
+                                   "; triangles run counter-clockwise seen from +z", ""};
+  const int mesh_dimension = dimension(element_kind(model));
   int bad = 0, worst = -1;
   double smallest = 1e-12;  // flatter than this, the gradients have no correct digits left
   for (const Region& region : model.regions)
     for (const int e : region.elements) {
-      const double shape = mesh.kinds[static_cast<std::size_t>(e)] == CellKind::tet4 ? reference_shape<4>(mesh, e)
-                                                                                     : reference_shape<10>(mesh, e);
+      const double shape = reference_shape(mesh, e);
       if (shape >= 1e-12) continue;
       ++bad;
       if (worst < 0 || shape < smallest) worst = e, smallest = shape;
@@ -101,8 +167,8 @@ void check_shapes(const Model& model) {
   if (bad > 0)
     throw Error(
         fmt::format("{} elements are inverted or flat in the reference mesh; the worst is element {} at {}: its "
-                    "Jacobian is {:g} times the cube of its longest edge",
-                    bad, worst, place(centre(mesh, worst)), smallest));
+                    "Jacobian is {:g} times {} of its longest edge{}",
+                    bad, worst, place(centre(mesh, worst)), smallest, powers[mesh_dimension], hints[mesh_dimension]));
 }
 
 void check_positive(const char* what, double value, bool zero_allowed) {
@@ -152,10 +218,11 @@ void check_nodes(const Mesh& mesh, const char* what, const std::string& label, c
 void check_face_load(const Model& model, const FaceLoad& load) {
   const Mesh& mesh = *model.mesh;
   for (const Face& face : load.faces)
-    if (face.element < 0 || face.element >= mesh.cell_count() || face.local < 0 || face.local > 3 ||
-        !is_tet(mesh.kinds[static_cast<std::size_t>(face.element)]))
-      throw Error(fmt::format("load '{}' names face {} of cell {}, which is no face of a tetrahedron", load.name,
-                              face.local, face.element));
+    if (face.element < 0 || face.element >= mesh.cell_count() || face.local < 0 ||
+        mesh.kinds[static_cast<std::size_t>(face.element)] != element_kind(model) ||
+        face.local >= side_count(element_kind(model)))
+      throw Error(fmt::format("load '{}' names face {} of cell {}, which is no side of an element (a {})", load.name,
+                              face.local, face.element, name(element_kind(model))));
   const std::size_t count = load.pressures.empty() ? load.tractions.size() : load.pressures.size();
   if (!load.pressures.empty() && !load.tractions.empty())
     throw Error(fmt::format("load '{}' has both pressures and tractions", load.name));
@@ -185,6 +252,8 @@ void Model::check() const {
   mesh->check();
   check_settings(settings);
   check_regions(*this);
+  check_plane(*this);
+  check_flat(*this);
   check_shapes(*this);
   if (steps.empty()) throw Error("the simulation has no step");
   for (const Step& step : steps) {

@@ -18,6 +18,10 @@ class Law;  // solver/materials/law.hpp
 /// k; lanes that are not named repeat the last.
 using LocalLaw = std::function<std::shared_ptr<const Law>(std::span<const int> elements)>;
 
+/// The law where parameters vary inside elements: lane k is a quadrature point at reference position places[k]; lanes
+/// that are not named repeat the last.
+using PointLaw = std::function<std::shared_ptr<const Law>(std::span<const Vec3> places)>;
+
 /// Quasi-linear viscoelasticity: the second Piola stress is the convolution of G(t) = 1 - sum_i g_i (1 - exp(-t/tau_i))
 /// with the rate of the law's own. The law is the instantaneous one, or the long-term one, which is then divided by
 /// 1 - sum g_i. Empty: elastic.
@@ -33,6 +37,7 @@ struct Region {
   double density = 1;              ///< mass per reference volume, >= 0
   std::vector<int> elements;       ///< cell ids of Model::mesh
   LocalLaw local_law = {};         ///< empty: `law` everywhere
+  PointLaw point_law = {};         ///< if set, instead of both; standard elements only
   Prony prony = {};
 };
 
@@ -67,10 +72,10 @@ struct NodalForce {
   VectorFunction function = {};  ///< if set, the force at X and t instead of `values`
 };
 
-/// A boundary face of a tetrahedron: element and local face (see msml::tet_faces).
+/// A side of an element: face of a tetrahedron, edge of a triangle, end of a line (see msml::side_nodes).
 struct Face {
   int element = -1;  ///< cell id
-  int local = -1;    ///< 0..3
+  int local = -1;    ///< 0..dimension
 };
 
 /// Pressure (positive pushes against the outward normal) or a traction vector on faces.

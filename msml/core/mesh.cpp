@@ -47,6 +47,32 @@ void check_node(int node, int count, std::size_t cell) {
 const std::array<std::array<int, 6>, 4> tet_faces{
     {{1, 2, 3, 5, 9, 8}, {0, 3, 2, 7, 9, 6}, {0, 1, 3, 4, 8, 7}, {0, 2, 1, 6, 5, 4}}};
 
+int side_count(CellKind kind) { return dimension(kind) == 0 ? 0 : dimension(kind) + 1; }
+
+CellKind side_kind(CellKind kind) {
+  switch (kind) {
+    case CellKind::tet10:
+      return CellKind::tri6;
+    case CellKind::tet4:
+      return CellKind::tri3;
+    case CellKind::tri6:
+      return CellKind::line3;
+    case CellKind::tri3:
+      return CellKind::line2;
+    default:
+      return CellKind::vertex;
+  }
+}
+
+std::span<const int> side_nodes(CellKind kind, int side) {
+  static constexpr std::array<std::array<int, 3>, 3> triangle{{{0, 1, 3}, {1, 2, 4}, {2, 0, 5}}};
+  static constexpr std::array<int, 2> line{0, 1};
+  const std::size_t s = static_cast<std::size_t>(side), count = static_cast<std::size_t>(node_count(side_kind(kind)));
+  if (dimension(kind) == 3) return std::span<const int>(tet_faces[s]).first(count);
+  if (dimension(kind) == 2) return std::span<const int>(triangle[s]).first(count);
+  return std::span<const int>(line).subspan(s, 1);
+}
+
 int node_count(CellKind kind) { return of(kind).nodes; }
 int dimension(CellKind kind) { return of(kind).dimension; }
 int corner_count(CellKind kind) { return of(kind).dimension + 1; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -90,5 +91,11 @@ std::string with_commas(long long value);
 /// The four faces of a tetrahedron, corners counter-clockwise seen from outside; for tet10 the mid nodes of the edges
 /// 01, 12, 20 of that face follow (tri6 order).
 extern const std::array<std::array<int, 6>, 4> tet_faces;
+
+/// The sides of a cell: faces of a tetrahedron (as in tet_faces), edges 01, 12, 20 of a triangle (counter-clockwise,
+/// the mid node last), end points 0 and 1 of a line.
+int side_count(CellKind kind);                             ///< dimension + 1; 0 for a vertex
+CellKind side_kind(CellKind kind);                         ///< tri3, tri6, line2, line3 or vertex
+std::span<const int> side_nodes(CellKind kind, int side);  ///< local node numbers, node_count(side_kind(kind)) of them
 
 }  // namespace msml

@@ -7,10 +7,13 @@
 
 namespace msml::fe {
 
-/// A face with a pressure that follows the deformed surface.
+/// A side of an element with a pressure that follows the deformed surface.
 struct FollowerFace {
-  int count = 3;      ///< nodes: 3 or 6
-  int nodes[6] = {};  ///< numbered nodes, counter-clockwise seen from outside
+  CellKind kind = CellKind::tri3;  ///< tri3, tri6; line2, line3 of plane bodies; vertex of lines
+  int count = 0;                   ///< nodes
+  int nodes[6] = {};               ///< numbered nodes, in the order of side_nodes: the outside is on the right of edges
+  int end = 0;                     ///< of lines: 0 looks to -x, 1 to +x
+  double thickness = 1;            ///< of plane bodies; cross-section of lines
   double pressure = 0;
 };
 

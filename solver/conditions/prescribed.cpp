@@ -29,6 +29,13 @@ Supports make_supports(const Step& step, const Numbering& numbering, const Vecto
         supports.ramped[k] = condition.ramp == Ramp::linear;
       }
     }
+  for (int node = 0; node < numbering.nodes(); ++node)
+    for (int c = numbering.components; c < 3; ++c) {
+      const std::size_t k = static_cast<std::size_t>(3 * node + c);
+      supports.fixed[k] = 1;
+      supports.start[3 * node + c] = supports.end[3 * node + c] = 0;
+      supports.ramped[k] = 0;
+    }
   return supports;
 }
 

@@ -16,7 +16,8 @@ struct Supports {
 };
 
 /// `u` is the displacement at the start of the step. Where two conditions fix one unknown, the later wins. Nodes that
-/// belong to no element are passed over.
+/// belong to no element are passed over. Unknowns that the problem does not have (Numbering::components) are fixed at
+/// 0.
 Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u);
 
 }  // namespace msml::fe

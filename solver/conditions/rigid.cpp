@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "msml/core/error.hpp"
+#include "solver/elements/assembly.hpp"
 
 namespace msml::fe {
 namespace {
@@ -41,14 +42,31 @@ std::vector<int> connected_parts(const Model& model) {
   return parent;
 }
 
+using Gram = Eigen::Matrix<double, 6, 6>;  ///< sum of c c^T, c = what one component of one node sees of the 6 motions
+
 struct Part {
   int points = 0;
   Vec3 centre = Vec3::Zero();
   double radius = 0;
-  Eigen::Matrix<double, 6, 6> gram = Eigen::Matrix<double, 6, 6>::Zero();  ///< sum of c c^T, c = motion of one support
+  Gram all = Gram::Zero();     ///< of every component of every node
+  Gram absent = Gram::Zero();  ///< of components that the problem does not have
+  Gram held = Gram::Zero();    ///< of those and of the supports
 };
 
-std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_of) {
+/// The support sees translation e_c and rotation w as e_c . (w x arm) = w . (arm x e_c).
+Gram seen(const Vec3& arm, int c) {
+  Eigen::Matrix<double, 6, 1> row;
+  row << Vec3::Unit(c), arm.cross(Vec3::Unit(c));
+  return row * row.transpose();
+}
+
+long rank(const Gram& gram) {
+  const Eigen::SelfAdjointEigenSolver<Gram> solver(gram, Eigen::EigenvaluesOnly);
+  const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
+  return (solver.eigenvalues().array() >= 1e-12 * largest).count();
+}
+
+std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_of, int components) {
   std::vector<Part> parts(part_of.size());
   for (std::size_t n = 0; n < part_of.size(); ++n) {
     if (part_of[n] < 0) continue;
@@ -64,6 +82,16 @@ std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_o
     part.radius =
         std::max(part.radius, (mesh.points.row(static_cast<Eigen::Index>(n)).transpose() - part.centre).norm());
   }
+  for (std::size_t n = 0; n < part_of.size(); ++n) {
+    if (part_of[n] < 0) continue;
+    Part& part = parts[static_cast<std::size_t>(part_of[n])];
+    const Vec3 arm = (mesh.points.row(static_cast<Eigen::Index>(n)).transpose() - part.centre) / part.radius;
+    for (int c = 0; c < 3; ++c) {
+      part.all += seen(arm, c);
+      if (c >= components) part.absent += seen(arm, c);
+    }
+    part.held = part.absent;
+  }
   return parts;
 }
 
@@ -72,31 +100,25 @@ std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_o
 void check_held(const Model& model, const Step& step) {
   const Mesh& mesh = *model.mesh;
   const std::vector<int> part_of = connected_parts(model);
-  std::vector<Part> parts = measure_parts(mesh, part_of);
+  std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
   for (const Prescribed& condition : step.prescribed)
     for (const int node : condition.nodes) {
       const int id = part_of[static_cast<std::size_t>(node)];
       if (id < 0) continue;
       Part& part = parts[static_cast<std::size_t>(id)];
       const Vec3 arm = (mesh.points.row(node).transpose() - part.centre) / part.radius;
-      for (int c = 0; c < 3; ++c) {
-        if (!condition.components[c]) continue;
-        // The support sees translation e_c and rotation w as e_c . (w x arm) = w . (arm x e_c).
-        Eigen::Matrix<double, 6, 1> row;
-        row << Vec3::Unit(c), arm.cross(Vec3::Unit(c));
-        part.gram += row * row.transpose();
-      }
+      for (int c = 0; c < components(model); ++c)
+        if (condition.components[c]) part.held += seen(arm, c);
     }
   for (const Part& part : parts) {
     if (part.points == 0) continue;
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(part.gram, Eigen::EigenvaluesOnly);
-    const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
-    const auto free = (solver.eigenvalues().array() < 1e-12 * largest).count();
+    const long motions = rank(part.all) - rank(part.absent), free = rank(part.all) - rank(part.held);
     if (free > 0)
       throw Error(
-          fmt::format("step '{}' is static, but {} of the 6 rigid motions of the part of {} nodes around "
-                      "({:g} {:g} {:g}) are free: hold it, or choose a dynamic timeIntegration",
-                      step.name, free, part.points, part.centre[0], part.centre[1], part.centre[2]));
+          fmt::format("step '{}' is static, but {} of the {} rigid motions of the part of {} nodes around "
+                      "({:g} {:g} {:g}) {} free: hold it, or choose a dynamic timeIntegration",
+                      step.name, free, motions, part.points, part.centre[0], part.centre[1], part.centre[2],
+                      free == 1 ? "is" : "are"));
   }
 }
 

@@ -14,6 +14,8 @@ namespace msml::fe {
 /// space-filling curve, so that neighbours lie close in memory.
 struct Numbering {
   CellKind kind = CellKind::tet4;
+  int components = 3;              ///< unknowns per node that the problem has, see components(); the others stay zero
+  bool scalar = false;             ///< the one unknown is no displacement (Law::components() == 1)
   std::vector<int> elements;       ///< cell ids, by region, then along the curve
   std::vector<int> region_of;      ///< region of each of `elements`
   std::vector<int> node_of;        ///< mesh point of each numbered node
@@ -22,6 +24,14 @@ struct Numbering {
   int nodes() const { return static_cast<int>(node_of.size()); }
 };
 Numbering number(const Model& model);
+
+/// The kind of the elements of a model (all are of one).
+CellKind element_kind(const Model& model);
+/// True if the unknown is no displacement: a law has one component.
+bool is_scalar(const Model& model);
+/// Unknowns per node of a model: 1 for lines and scalar problems, 2 for triangles, 3 for tetrahedra. Vectors always
+/// have 3 numbers per node; those that a problem does not have are fixed at zero (make_supports).
+int components(const Model& model);
 
 /// #points x 3 of the mesh from 3 numbers per numbered node (zero elsewhere), and back.
 Points to_points(const Numbering& numbering, const Vector& values);
@@ -38,8 +48,9 @@ struct Assembled {
 /// Quadrature point values of one element, for results.
 struct ElementPoints {
   int count = 0;
-  double weight[4];    ///< reference volume of the point
-  Gradients gradient;  ///< lane k: displacement gradient of point k
+  double weight[lanes];  ///< reference volume of the point
+  Vec3 place[lanes];     ///< reference position
+  Gradients gradient;    ///< lane k: displacement gradient of point k
 };
 
 /// Elements of one kind. Sums are added in an order fixed by the mesh alone: results are equal bit for bit for every

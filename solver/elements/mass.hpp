@@ -9,14 +9,15 @@ namespace msml::fe {
 template <int nodes>
 using ElementMass = Eigen::Matrix<double, nodes, nodes>;
 
-/// Consistent mass. Exact: degree 2 for tet4; for tet10 degree 4, times up to 3 of a curved Jacobian.
-template <int nodes>
+/// Consistent mass. Exact: degree 2 for linear elements; for quadratic ones degree 4, times up to 3 of a curved
+/// Jacobian. `density` is per reference volume, times the thickness of a triangle or the cross-section of a line.
+template <int dimension, int nodes>
 ElementMass<nodes> consistent_mass(const Points& points, const int* ids, double density) {
-  static const Rule<3> rule = collapsed_tetrahedron_rule(nodes == 4 ? 2 : 4);
+  static const Rule<dimension> rule = rule_of_size<dimension>(Simplex<dimension, nodes>::quadratic ? 4 : 2);
   ElementMass<nodes> M = ElementMass<nodes>::Zero();
   for (const auto& q : rule) {
-    const auto N = Tetrahedron<nodes>::values(q.xi);
-    const double w = density * q.weight * jacobian<nodes>(points, ids, q.xi).determinant();
+    const auto N = Simplex<dimension, nodes>::values(q.xi);
+    const double w = density * q.weight * jacobian<dimension, nodes>(points, ids, q.xi).determinant();
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b) M(a, b) += w * N[a] * N[b];
   }

@@ -46,7 +46,8 @@ void order_elements(const Model& model, const Curve& curve, Numbering& numbering
   for (std::size_t r = 0; r < model.regions.size(); ++r)
     for (const int e : model.regions[r].elements) {
       Eigen::RowVector3d centre = Eigen::RowVector3d::Zero();
-      for (int a = 0; a < 4; ++a) centre += 0.25 * mesh.points.row(mesh.cell(e)[a]);
+      const int corners = corner_count(mesh.kinds[static_cast<std::size_t>(e)]);
+      for (int a = 0; a < corners; ++a) centre += mesh.points.row(mesh.cell(e)[a]) / corners;
       keys.push_back({static_cast<int>(r), curve.at(centre), e});
     }
   std::sort(keys.begin(), keys.end());
@@ -64,6 +65,8 @@ Numbering number(const Model& model) {
   Numbering numbering;
   order_elements(model, curve, numbering);
   numbering.kind = mesh.kinds[static_cast<std::size_t>(numbering.elements.front())];
+  numbering.components = components(model);
+  numbering.scalar = is_scalar(model);
   const int nodes = node_count(numbering.kind);
   numbering.number_of.assign(static_cast<std::size_t>(mesh.point_count()), -1);
   std::vector<Keyed> keys;

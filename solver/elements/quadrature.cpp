@@ -55,4 +55,12 @@ Rule<2> collapsed_triangle_rule(int n) {
   return rule;
 }
 
+Rule<2> triangle_rule(int points) {
+  if (points == 1) return {{{1.0 / 3, 1.0 / 3}, 0.5}};
+  const double a = 2.0 / 3, b = 1.0 / 6;
+  return {{{b, b}, b}, {{a, b}, b}, {{b, a}, b}};
+}
+
+Rule<1> line_rule(int n) { return gauss_jacobi(n, 0); }
+
 }  // namespace msml::fe

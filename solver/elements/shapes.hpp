@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shape functions of tetrahedra and triangles in VTK's node order.
+// Shape functions of lines, triangles and tetrahedra in VTK's node order.
 #pragma once
 #include <Eigen/LU>
 #include <array>
@@ -9,9 +9,10 @@
 
 namespace msml::fe {
 
-/// A simplex of `dimension` with `nodes` nodes: 4 or 10 (tetrahedron), 3 or 6 (triangle).
+/// A simplex of `dimension` with `nodes` nodes: 4 or 10 (tetrahedron), 3 or 6 (triangle), 2 or 3 (line), 1 (point).
 /// Reference corners: the origin, then the unit points of each axis. Mid nodes:
-///   tetrahedron 4 on 01, 5 on 12, 6 on 20, 7 on 03, 8 on 13, 9 on 23;   triangle 3 on 01, 4 on 12, 5 on 20.
+///   tetrahedron 4 on 01, 5 on 12, 6 on 20, 7 on 03, 8 on 13, 9 on 23;   triangle 3 on 01, 4 on 12, 5 on 20;
+///   line 2 on 01.
 template <int dimension, int nodes>
 struct Simplex {
   static constexpr int corners = dimension + 1;
@@ -62,22 +63,41 @@ using Tetrahedron = Simplex<3, nodes>;
 template <int nodes>
 using Triangle = Simplex<2, nodes>;
 
-/// The rule for internal forces and stiffness: 1 point (tet4), 4 points (tet10).
-template <int nodes>
-constexpr int stiffness_points = nodes == 4 ? 1 : 4;
-template <int nodes>
-Rule<3> stiffness_rule() {
-  return nodes == 4 ? one_point_rule() : four_point_rule();
+/// The rule for internal forces and stiffness, exact for the stiffness of straight elements: 1 point (line2, tri3,
+/// tet4), 2 (line3), 3 (tri6), 4 (tet10).
+template <int dimension, int nodes>
+constexpr int stiffness_points = Simplex<dimension, nodes>::quadratic ? dimension + 1 : 1;
+template <int dimension, int nodes>
+Rule<dimension> stiffness_rule() {
+  constexpr int count = stiffness_points<dimension, nodes>;
+  if constexpr (dimension == 1) return line_rule(count);
+  if constexpr (dimension == 2) return triangle_rule(count);
+  if constexpr (dimension == 3) return count == 1 ? one_point_rule() : four_point_rule();
 }
 
-/// dX/dxi of an element at a reference point: J(i, d) = sum_a X_a,i dN_a/dxi_d. `ids` are rows of `points`.
-template <int nodes>
-Mat3 jacobian(const Points& points, const int* ids, const std::array<double, 3>& xi) {
-  const auto g = Tetrahedron<nodes>::gradients(xi);
-  Mat3 J = Mat3::Zero();
+template <int dimension>
+using Jacobian = Eigen::Matrix<double, dimension, dimension>;
+
+/// dX/dxi of an element at a reference point: J(i, d) = sum_a X_a,i dN_a/dxi_d. `ids` are rows of `points`; triangles
+/// use x and y, lines x.
+template <int dimension, int nodes>
+Jacobian<dimension> jacobian(const Points& points, const int* ids, const std::array<double, dimension>& xi) {
+  const auto g = Simplex<dimension, nodes>::gradients(xi);
+  Jacobian<dimension> J = Jacobian<dimension>::Zero();
   for (int a = 0; a < nodes; ++a)
-    J += points.row(ids[a]).transpose() * Eigen::Map<const Eigen::RowVector3d>(g[a].data());
+    for (int i = 0; i < dimension; ++i)
+      for (int d = 0; d < dimension; ++d)
+        J(i, d) += points(ids[a], i) * g[static_cast<std::size_t>(a)][static_cast<std::size_t>(d)];
   return J;
+}
+
+/// The reference position of a point of an element.
+template <int dimension, int nodes>
+Vec3 place(const Points& points, const int* ids, const std::array<double, dimension>& xi) {
+  const auto N = Simplex<dimension, nodes>::values(xi);
+  Vec3 x = Vec3::Zero();
+  for (int a = 0; a < nodes; ++a) x += N[static_cast<std::size_t>(a)] * points.row(ids[a]).transpose();
+  return x;
 }
 
 }  // namespace msml::fe

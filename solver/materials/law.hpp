@@ -61,6 +61,8 @@ class Law {
   virtual bool survives_inversion() const { return false; }
   /// Unknowns per node: 3 displacements, or 1 for a scalar problem, whose gradient is row 0 of H.
   virtual int components() const { return 3; }
+  /// Sets the entries of H that the law itself determines (plane stress: H_33 such that P_33 = 0).
+  virtual void complete(std::span<Gradients> /*gradients*/) const {}
   virtual bool small_strain() const { return false; }  ///< true if the law is linear in H and sees no rotation
 };
 

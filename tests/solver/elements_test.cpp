@@ -18,11 +18,12 @@ double factorial(int n) { return n < 2 ? 1 : n * factorial(n - 1); }
 template <int dimension>
 void expect_degree(const Rule<dimension>& rule, int degree) {
   for (int a = 0; a <= degree; ++a)
-    for (int b = 0; a + b <= degree; ++b)
+    for (int b = 0; a + b <= (dimension >= 2 ? degree : a); ++b)
       for (int c = 0; a + b + c <= (dimension == 3 ? degree : a + b); ++c) {
         double sum = 0;
         for (const auto& q : rule)
-          sum += q.weight * std::pow(q.xi[0], a) * std::pow(q.xi[1], b) *
+          sum += q.weight * std::pow(q.xi[0], a) *
+                 (dimension >= 2 ? std::pow(q.xi[std::min(dimension - 1, 1)], b) : 1) *
                  (dimension == 3 ? std::pow(q.xi[dimension - 1], c) : 1);
         const double exact = factorial(a) * factorial(b) * factorial(c) / factorial(a + b + c + dimension);
         EXPECT_NEAR(sum, exact, 1e-14) << a << " " << b << " " << c;
@@ -32,9 +33,12 @@ void expect_degree(const Rule<dimension>& rule, int degree) {
 TEST(Quadrature, RulesAreExactToTheirDegree) {
   expect_degree(one_point_rule(), 1);
   expect_degree(four_point_rule(), 2);
+  expect_degree(triangle_rule(1), 1);
+  expect_degree(triangle_rule(3), 2);
   for (int n = 1; n <= 5; ++n) {
     expect_degree(collapsed_tetrahedron_rule(n), 2 * n - 1);
     expect_degree(collapsed_triangle_rule(n), 2 * n - 1);
+    expect_degree(line_rule(n), 2 * n - 1);
   }
 }
 
@@ -88,6 +92,8 @@ TEST(EveryElement, SumsToOneAndIsOneAtItsOwnNodeOnly) {
   ElementCase<3, 10>::check();
   ElementCase<2, 3>::check();
   ElementCase<2, 6>::check();
+  ElementCase<1, 2>::check();
+  ElementCase<1, 3>::check();
 }
 
 // rho V / 20 (1 + delta_ab), V = 1/6 * |det| of the three edges.
@@ -96,7 +102,7 @@ TEST(Tet4, MassIsTheClosedForm) {
   points << 0, 0, 0, 2, 0, 0, 0.5, 3, 0, 0.3, 0.2, 1.5;
   const int ids[4] = {0, 1, 2, 3};
   const double rho = 7, V = 2 * 3 * 1.5 / 6;
-  const auto M = consistent_mass<4>(points, ids, rho);
+  const auto M = consistent_mass<3, 4>(points, ids, rho);
   for (int a = 0; a < 4; ++a)
     for (int b = 0; b < 4; ++b) EXPECT_NEAR(M(a, b), rho * V / 20 * (a == b ? 2 : 1), 1e-13);
   const auto L = lumped_mass<4>(M);
@@ -104,9 +110,15 @@ TEST(Tet4, MassIsTheClosedForm) {
 }
 
 TEST(EveryElement, MassAddsUpToDensityTimesVolume) {
-  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
+  for (const CellKind kind : every_kind)
     for (const bool lumped : {false, true}) {
-      const Model model = make_model(box_mesh(3, 2, 1, {3, 1, 0.5}, kind), {}, 11);
+      const Model model = [&] {
+        if (dimension(kind) == 3) return make_model(box_mesh(3, 2, 1, {3, 1, 0.5}, kind), {}, 11);
+        Model flat = dimension(kind) == 2 ? make_model(rectangle_mesh(3, 2, 3, 1, kind), {}, 11)
+                                          : make_model(segment_mesh(4, 3, kind), {}, 11);
+        flat.thickness = 0.5;  // or the cross-section of a line
+        return flat;
+      }();
       const auto elements = make_elements(model);
       ScalarMatrix mass(elements->pattern());
       elements->add_mass(lumped, mass);

@@ -58,6 +58,65 @@ inline Mesh box_mesh(int nx, int ny, int nz, Vec3 size, CellKind kind) {
                    [&](double x, double y, double z) { return Vec3(x * size[0], y * size[1], z * size[2]); });
 }
 
+/// Grid of nx x ny unit squares, each cut into two triangles; `place` must keep the orientation. Mid nodes of tri6 are
+/// placed like corners.
+inline Mesh plane_mesh(int nx, int ny, CellKind kind, const std::function<Vec3(double, double)>& place) {
+  const int f = kind == CellKind::tri6 ? 2 : 1;
+  const auto id = [&](int i, int j) { return i * (f * ny + 1) + j; };
+  Mesh mesh;
+  mesh.points.resize((f * nx + 1) * (f * ny + 1), 3);
+  for (int i = 0; i <= f * nx; ++i)
+    for (int j = 0; j <= f * ny; ++j)
+      mesh.points.row(id(i, j)) = place(i / double(f * nx), j / double(f * ny)).transpose();
+  for (int i = 0; i < f * nx; i += f)
+    for (int j = 0; j < f * ny; j += f)
+      for (const bool low : {true, false}) {
+        // Corners of the half on or above the diagonal from (i, j) to (i + f, j + f), counter-clockwise.
+        const std::array<std::array<int, 2>, 3> c{{{i, j}, {i + f, low ? j : j + f}, {low ? i + f : i, j + f}}};
+        std::vector<int> nodes;
+        for (const auto& [a, b] : c) nodes.push_back(id(a, b));
+        if (f == 2)
+          for (std::size_t k = 0; k < 3; ++k)
+            nodes.push_back(id((c[k][0] + c[(k + 1) % 3][0]) / 2, (c[k][1] + c[(k + 1) % 3][1]) / 2));
+        mesh.add_cell(kind, nodes.data());
+      }
+  return mesh;
+}
+
+/// Rectangle [0,a] x [0,b].
+inline Mesh rectangle_mesh(int nx, int ny, double a, double b, CellKind kind) {
+  return plane_mesh(nx, ny, kind, [=](double x, double y) { return Vec3(a * x, b * y, 0); });
+}
+
+/// n elements on [0, length] of the x axis.
+inline Mesh segment_mesh(int n, double length, CellKind kind) {
+  const int f = kind == CellKind::line3 ? 2 : 1;
+  Mesh mesh;
+  mesh.points = Points::Zero(f * n + 1, 3);
+  for (int i = 0; i <= f * n; ++i) mesh.points(i, 0) = length * i / (f * n);
+  for (int i = 0; i < f * n; i += f) {
+    const int nodes[3] = {i, i + f, i + 1};
+    mesh.add_cell(kind, nodes);
+  }
+  return mesh;
+}
+
+/// The unit segment, square or cube, divided n times along each axis.
+inline Mesh unit_mesh(int n, CellKind kind) {
+  if (dimension(kind) == 1) return segment_mesh(n, 1, kind);
+  if (dimension(kind) == 2) return rectangle_mesh(n, n, 1, 1, kind);
+  return box_mesh(n, n, n, {1, 1, 1}, kind);
+}
+
+inline constexpr std::array<CellKind, 6> every_kind{CellKind::line2, CellKind::line3, CellKind::tri3,
+                                                    CellKind::tri6,  CellKind::tet4,  CellKind::tet10};
+
+/// The corners of the edge that carries mid node `corner_count(kind) + k`.
+inline std::array<int, 2> edge_of(int k) {
+  constexpr std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+  return edges[static_cast<std::size_t>(k)];
+}
+
 /// Joins points closer than 1e-9 (coordinates of order one).
 inline Mesh merge(const std::vector<Mesh>& parts) {
   Mesh joined;
@@ -117,14 +176,14 @@ inline int nearest_point(const Mesh& mesh, const Vec3& x) {
 
 /// Faces that belong to one element only and whose corners all pass the test.
 inline std::vector<Face> faces_where(const Mesh& mesh, const std::function<bool(const Vec3&)>& test) {
-  std::map<std::array<int, 3>, std::vector<Face>> seen;
+  std::map<std::vector<int>, std::vector<Face>> seen;
   for (int e = 0; e < mesh.cell_count(); ++e)
-    for (int local = 0; local < 4; ++local) {
-      std::array<int, 3> key;
+    for (int local = 0; local < side_count(mesh.kinds[static_cast<std::size_t>(e)]); ++local) {
+      std::vector<int> key;
       bool inside = true;
-      for (std::size_t a = 0; a < 3; ++a) {
-        key[a] = mesh.cell(e)[tet_faces[static_cast<std::size_t>(local)][a]];
-        inside = inside && test(mesh.points.row(key[a]).transpose());
+      for (const int a : side_nodes(mesh.kinds[static_cast<std::size_t>(e)], local)) {
+        key.push_back(mesh.cell(e)[a]);
+        inside = inside && test(mesh.points.row(key.back()).transpose());
       }
       if (!inside) continue;
       std::sort(key.begin(), key.end());

@@ -13,30 +13,43 @@ namespace {
 
 using namespace testing;
 
-bool on_unit_box(const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; }
+/// On the boundary of the unit segment, square or cube.
+bool on_boundary(const Vec3& x, CellKind kind) {
+  const auto inner = x.head(dimension(kind));
+  return inner.minCoeff() < 1e-9 || inner.maxCoeff() > 1 - 1e-9;
+}
 
-/// 3 x 3 x 3 cubes with the inner corners moved at random; mid nodes stay in the middle of straight edges.
-Mesh irregular_box(CellKind kind) {
-  Mesh mesh = box_mesh(3, 3, 3, {1, 1, 1}, kind);
+/// The unit mesh with the inner corners moved at random; mid nodes stay in the middle of straight edges.
+Mesh irregular_mesh(CellKind kind) {
+  Mesh mesh = unit_mesh(3, kind);
   Random random;
+  const int corners = corner_count(kind);
   std::vector<bool> corner(static_cast<std::size_t>(mesh.point_count()), false);
   for (int c = 0; c < mesh.cell_count(); ++c)
-    for (int a = 0; a < 4; ++a) corner[static_cast<std::size_t>(mesh.cell(c)[a])] = true;
+    for (int a = 0; a < corners; ++a) corner[static_cast<std::size_t>(mesh.cell(c)[a])] = true;
   for (int n = 0; n < mesh.point_count(); ++n)
-    if (corner[static_cast<std::size_t>(n)] && !on_unit_box(mesh.points.row(n).transpose()))
-      for (int d = 0; d < 3; ++d) mesh.points(n, d) += random.number(-0.07, 0.07);
-  const std::array<std::array<int, 2>, 6> edges{{{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
-  if (kind == CellKind::tet10)
-    for (int c = 0; c < mesh.cell_count(); ++c)
-      for (int k = 0; k < 6; ++k)
-        mesh.points.row(mesh.cell(c)[4 + k]) =
-            0.5 * (mesh.points.row(mesh.cell(c)[edges[k][0]]) + mesh.points.row(mesh.cell(c)[edges[k][1]]));
+    if (corner[static_cast<std::size_t>(n)] && !on_boundary(mesh.points.row(n).transpose(), kind))
+      for (int d = 0; d < dimension(kind); ++d) mesh.points(n, d) += random.number(-0.07, 0.07);
+  for (int c = 0; c < mesh.cell_count(); ++c)
+    for (int k = 0; corners + k < node_count(kind); ++k)
+      mesh.points.row(mesh.cell(c)[corners + k]) =
+          0.5 * (mesh.points.row(mesh.cell(c)[edge_of(k)[0]]) + mesh.points.row(mesh.cell(c)[edge_of(k)[1]]));
   return mesh;
+}
+
+/// Without the rows and columns of axes that elements of a kind do not have.
+Mat3 within(Mat3 m, CellKind kind) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (std::max(i, j) >= dimension(kind)) m(i, j) = 0;
+  return m;
 }
 
 /// Prescribes u = H X on the boundary; returns the largest error of u inside.
 double patch_error(Model& model, const Mat3& H, Outcome& outcome) {
-  Prescribed boundary{.name = "boundary", .nodes = points_where(*model.mesh, on_unit_box)};
+  Prescribed boundary{.name = "boundary", .nodes = points_where(*model.mesh, [&](const Vec3& x) {
+                                            return on_boundary(x, model.mesh->kinds.front());
+                                          })};
   for (const int n : boundary.nodes) boundary.values.push_back(H * model.mesh->points.row(n).transpose());
   model.steps[0].prescribed = {boundary};
   outcome = solve(model, {});
@@ -45,9 +58,9 @@ double patch_error(Model& model, const Mat3& H, Outcome& outcome) {
 
 TEST(EveryElement, PassesThePatchTestInSmallStrain) {
   Random random;
-  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
-    Model model = make_model(irregular_box(kind), {.youngs_modulus = 1000, .strain = Strain::small});
-    const Mat3 H = 1e-3 * random.matrix(), e = 0.5 * (H + H.transpose());
+  for (const CellKind kind : every_kind) {
+    Model model = make_model(irregular_mesh(kind), {.youngs_modulus = 1000, .strain = Strain::small});
+    const Mat3 H = within(1e-3 * random.matrix(), kind), e = 0.5 * (H + H.transpose());
     Outcome outcome;
     const double error = patch_error(model, H, outcome);
     EXPECT_EQ(outcome.stop, Stop::converged);
@@ -57,6 +70,7 @@ TEST(EveryElement, PassesThePatchTestInSmallStrain) {
     const ElementResults results = element_results(model, outcome.state);
     for (int c = 0; c < model.mesh->cell_count(); ++c) {
       EXPECT_NEAR(results.cauchy[static_cast<std::size_t>(6 * c)], sigma(0, 0), 1e-10);
+      EXPECT_NEAR(results.cauchy[static_cast<std::size_t>(6 * c + 2)], sigma(2, 2), 1e-10);
       EXPECT_NEAR(results.cauchy[static_cast<std::size_t>(6 * c + 3)], sigma(0, 1), 1e-10);
       EXPECT_NEAR(results.cauchy[static_cast<std::size_t>(6 * c + 4)], sigma(1, 2), 1e-10);
       EXPECT_NEAR(results.cauchy[static_cast<std::size_t>(6 * c + 5)], sigma(0, 2), 1e-10);
@@ -65,18 +79,22 @@ TEST(EveryElement, PassesThePatchTestInSmallStrain) {
 }
 
 TEST(EveryElement, PassesThePatchTestUnderLargeRotationAndStretch) {
-  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
-    Model model = make_model(irregular_box(kind), {.youngs_modulus = 1000});
+  for (const CellKind kind : every_kind) {
+    Model model = make_model(irregular_mesh(kind), {.youngs_modulus = 1000});
     model.settings.tolerance = 1e-12;
-    const Mat3 R = Eigen::AngleAxisd(0.6, Vec3(1, 2, -1).normalized()).toRotationMatrix();
-    const Mat3 F = R * Vec3(1.2, 0.9, 1.05).asDiagonal();
+    const bool line = dimension(kind) == 1, plane = dimension(kind) == 2;
+    const Vec3 axis = plane ? Vec3(0, 0, 1) : Vec3(1, 2, -1).normalized();
+    const double angle = line ? 0 : 0.6;
+    const Vec3 stretches(1.2, line ? 1 : 0.9, line || plane ? 1 : 1.05);
+    const Mat3 R = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    const Mat3 F = R * stretches.asDiagonal();
     Outcome outcome;
     EXPECT_LT(patch_error(model, F - Mat3::Identity(), outcome), 1e-10);
     EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
     const ElementResults results = element_results(model, outcome.state);
-    for (const double J : results.J) EXPECT_NEAR(J, 1.2 * 0.9 * 1.05, 1e-10);
-    for (const double angle : results.rotation) EXPECT_NEAR(angle, 0.6 * 180 / M_PI, 1e-8);
-    EXPECT_NEAR(outcome.check.volume_change, 1.2 * 0.9 * 1.05 - 1, 1e-10);
+    for (const double J : results.J) EXPECT_NEAR(J, stretches.prod(), 1e-10);
+    for (const double found : results.rotation) EXPECT_NEAR(found, angle * 180 / M_PI, 1e-8);
+    EXPECT_NEAR(outcome.check.volume_change, stretches.prod() - 1, 1e-10);
     EXPECT_NEAR(outcome.check.largest_strain, 0.2, 1e-9);
   }
 }
@@ -86,10 +104,10 @@ TEST(EveryElement, PassesThePatchTestUnderLargeRotationAndStretch) {
 TEST(Tet10, MissesThePatchTestOnlyByTheCurvature) {
   double errors[2];
   for (int k = 0; k < 2; ++k) {
-    Mesh mesh = irregular_box(CellKind::tet10);
+    Mesh mesh = irregular_mesh(CellKind::tet10);
     Random random;
     for (int n = 0; n < mesh.point_count(); ++n)
-      if (!on_unit_box(mesh.points.row(n).transpose()))
+      if (!on_boundary(mesh.points.row(n).transpose(), CellKind::tet10))
         for (int d = 0; d < 3; ++d) mesh.points(n, d) += (k == 0 ? 0.01 : 0.005) * random.number();
     Model model = make_model(std::move(mesh), {.strain = Strain::small});
     Outcome outcome;
@@ -104,7 +122,7 @@ TEST(Tet10, MissesThePatchTestOnlyByTheCurvature) {
 TEST(EveryElement, HasNoStressUnderARigidMotion) {
   const Mat3 R = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
-    const Model model = make_model(irregular_box(kind), {.youngs_modulus = 1});
+    const Model model = make_model(irregular_mesh(kind), {.youngs_modulus = 1});
     State state;
     state.displacement = model.mesh->points * (R - Mat3::Identity()).transpose();
     state.displacement.rowwise() += Eigen::RowVector3d(3, -1, 2);

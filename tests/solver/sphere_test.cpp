@@ -49,7 +49,7 @@ double l2_error(const Model& model, const State& state, double nu) {
         u += N[a] * state.displacement.row(ids[a]).transpose();
       }
       const Vec3 exact = lame(x.norm(), nu) * x.normalized();
-      const double w = q.weight * jacobian<nodes>(model.mesh->points, ids, q.xi).determinant();
+      const double w = q.weight * jacobian<3, nodes>(model.mesh->points, ids, q.xi).determinant();
       error += w * (u - exact).squaredNorm();
       size += w * exact.squaredNorm();
     }

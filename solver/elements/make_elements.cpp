@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Chooses the elements of a model by mesh kind and formulation.
+#include <algorithm>
+
+#include "solver/elements/simplex_elements.hpp"
+
+namespace msml::fe {
+namespace {
+
+std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
+  switch (kind) {
+    case CellKind::line2:
+      return std::make_unique<SimplexElements<1, 2>>(model);
+    case CellKind::line3:
+      return std::make_unique<SimplexElements<1, 3>>(model);
+    case CellKind::tri3:
+      return std::make_unique<SimplexElements<2, 3>>(model);
+    case CellKind::tri6:
+      return std::make_unique<SimplexElements<2, 6>>(model);
+    case CellKind::tet4:
+      return std::make_unique<SimplexElements<3, 4>>(model);
+    default:
+      return std::make_unique<SimplexElements<3, 10>>(model);
+  }
+}
+
+}  // namespace
+
+CellKind element_kind(const Model& model) {
+  for (const Region& region : model.regions)
+    if (!region.elements.empty()) return model.mesh->kinds[static_cast<std::size_t>(region.elements.front())];
+  return CellKind::tet4;
+}
+
+bool is_scalar(const Model& model) {
+  return std::any_of(model.regions.begin(), model.regions.end(), [](const Region& region) {
+    return !region.elements.empty() && region.law && region.law->components() == 1;
+  });
+}
+
+int components(const Model& model) { return is_scalar(model) ? 1 : dimension(element_kind(model)); }
+
+std::unique_ptr<Elements> make_elements(const Model& model) { return standard_elements(model, element_kind(model)); }
+
+}  // namespace msml::fe

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Picks the laws of elements.
+#include "solver/elements/region_laws.hpp"
+
+namespace msml::fe {
+namespace {
+
+std::shared_ptr<const Law> in_plane(const Model&, std::shared_ptr<const Law> law) { return law; }
+
+}  // namespace
+
+BatchLaws laws_of(const Model& model, const Region& region, std::span<const int> elements,
+                  std::span<const std::vector<Vec3>> places) {
+  BatchLaws batch;
+  if (region.point_law)
+    for (const std::vector<Vec3>& at : places) batch.laws.push_back(in_plane(model, region.point_law(at)));
+  else
+    batch.laws.push_back(in_plane(model, region.local_law ? region.local_law(elements) : region.law));
+  return batch;
+}
+
+std::shared_ptr<const Law> law_of_points(const Model& model, const Region& region, int element,
+                                         std::span<const Vec3> places) {
+  if (region.point_law) return in_plane(model, region.point_law(places));
+  return in_plane(model, region.local_law ? region.local_law({&element, 1}) : region.law);
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The element loops: gather, law, force and stiffness, scatter.
+#include "solver/elements/simplex_elements.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "solver/elements/mass.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
+
+/// values[3 n] for the nodes a of eight elements.
+template <class Batch>
+Lanes gather(const Batch& batch, int a, const double* values) {
+  alignas(Lanes) double out[lanes];
+  for (int lane = 0; lane < lanes; ++lane) out[lane] = values[3 * batch.node[lane][a]];
+  Lanes result;
+  std::memcpy(&result, out, sizeof result);
+  return result;
+}
+
+/// a . b of two vectors of `dimension` lanes.
+template <int dimension>
+Lanes inner(const Lanes* a, const Lanes* b) {
+  Lanes sum = a[0] * b[0];
+  for (int k = 1; k < dimension; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// force_a += w P g_a.
+template <int dimension, int nodes>
+void add_force(const Tensor<Lanes>& P, Lanes w, const SimplexGradients<dimension, nodes>& gradients,
+               SimplexResult<dimension, nodes>& result) {
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < dimension; ++i) result.force[a][i] += w * inner<dimension>(P.c + 3 * i, gradients.g[a]);
+}
+
+/// block_ab(i, j) += w sum_kl g_a,k A_(ik)(jl) g_b,l.
+template <int dimension, int nodes>
+void add_stiffness(const Lanes* A, Lanes w, const SimplexGradients<dimension, nodes>& gradients,
+                   SimplexResult<dimension, nodes>& result) {
+  for (int b = 0; b < nodes; ++b) {
+    Lanes scaled[dimension];
+    for (int l = 0; l < dimension; ++l) scaled[l] = w * gradients.g[b][l];
+    Lanes half[dimension][dimension][dimension];  // A contracted with g_b: i, j, k
+    for (int i = 0; i < dimension; ++i)
+      for (int k = 0; k < dimension; ++k)
+        for (int j = 0; j < dimension; ++j) {
+          Lanes sum = A[packed(3 * i + k, 3 * j)] * scaled[0];
+          for (int l = 1; l < dimension; ++l) sum += A[packed(3 * i + k, 3 * j + l)] * scaled[l];
+          half[i][j][k] = sum;
+        }
+    for (int a = 0; a <= b; ++a) {
+      Lanes* block = result.block[packed(b, a)];
+      for (int i = 0; i < dimension; ++i)
+        for (int j = 0; j < dimension; ++j) block[dimension * i + j] += inner<dimension>(gradients.g[a], half[i][j]);
+    }
+  }
+}
+
+template <int dimension, int nodes, class Batch>
+void scatter_force(const Batch& batch, const SimplexResult<dimension, nodes>& result, Vector& force) {
+  for (int lane = 0; lane < batch.count; ++lane)
+    for (int a = 0; a < nodes; ++a) {
+      double* f = force.data() + 3 * batch.node[lane][a];
+      for (int i = 0; i < dimension; ++i) f[i] += result.force[a][i][lane];
+    }
+}
+
+template <int dimension, int nodes, class Batch>
+void scatter_stiffness(const Batch& batch, const SimplexResult<dimension, nodes>& result, BlockMatrix& matrix) {
+  for (int lane = 0; lane < batch.count; ++lane)
+    for (int b = 0; b < nodes; ++b)
+      for (int a = 0; a <= b; ++a) {
+        const Lanes* block = result.block[packed(b, a)];
+        double* upper = matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][a * nodes + b]);
+        double* lower = matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][b * nodes + a]);
+        for (int i = 0; i < dimension; ++i)
+          for (int j = 0; j < dimension; ++j) upper[3 * i + j] += block[dimension * i + j][lane];
+        if (a == b) continue;
+        for (int i = 0; i < dimension; ++i)
+          for (int j = 0; j < dimension; ++j) lower[3 * j + i] += block[dimension * i + j][lane];
+      }
+}
+
+void merge(Assembled& sum, const Assembled& part) {
+  sum.energy += part.energy;
+  sum.finite = sum.finite && part.finite;
+  if (part.smallest_J < sum.smallest_J) {
+    sum.smallest_J = part.smallest_J;
+    sum.smallest_J_element = part.smallest_J_element;
+  }
+}
+
+}  // namespace
+
+template <int dimension, int nodes, int count>
+SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
+    : numbering_(number(model)),
+      pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes)),
+      positions_(model.mesh->points),
+      thickness_(dimension < 3 ? model.thickness : 1) {
+  const Rule<dimension> places = rule();
+  for (std::size_t q = 0; q < count; ++q) reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
+  for (const Region& region : model.regions) densities_.push_back(region.density);
+  make_batches(model);
+  std::vector<std::vector<int>> batch_nodes;
+  for (const Batch& batch : batches_) {
+    batch_nodes.emplace_back();
+    for (int lane = 0; lane < batch.count; ++lane)
+      batch_nodes.back().insert(batch_nodes.back().end(), batch.node[lane], batch.node[lane] + nodes);
+  }
+  colours_ = colour_chunks(batch_nodes, numbering_.nodes());
+}
+
+template <int dimension, int nodes, int count>
+Rule<dimension> SimplexElements<dimension, nodes, count>::rule() {
+  return stiffness_rule<dimension, nodes>();
+}
+
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::make_batches(const Model& model) {
+  const int all = static_cast<int>(numbering_.elements.size());
+  for (int first = 0; first < all;) {
+    Batch batch;
+    batch.first = first;
+    batch.region = numbering_.region_of[static_cast<std::size_t>(first)];
+    while (batch.count < lanes && first + batch.count < all &&
+           numbering_.region_of[static_cast<std::size_t>(first + batch.count)] == batch.region)
+      ++batch.count;
+    first += batch.count;
+    batches_.push_back(batch);
+  }
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) { fill(batches_[b], model); });
+}
+
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& model) const {
+  const Rule<dimension> places = rule();
+  std::vector<std::vector<Vec3>> positions(count);
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::size_t e = static_cast<std::size_t>(batch.first + std::min(lane, batch.count - 1));
+    int ids[nodes];
+    for (int a = 0; a < nodes; ++a) {
+      batch.node[lane][a] = numbering_.element_nodes[e * nodes + static_cast<std::size_t>(a)];
+      ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
+    }
+    for (int a = 0; a < nodes; ++a)
+      for (int b = 0; b < nodes; ++b)
+        batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
+    for (std::size_t q = 0; q < count; ++q) {
+      const Jacobian<dimension> J = jacobian<dimension, nodes>(positions_, ids, places[q].xi);
+      const Jacobian<dimension> inverse = J.inverse();
+      for (int k = 0; k < dimension * dimension; ++k)
+        batch.points[q].inverse[k][lane] = inverse(k / dimension, k % dimension);
+      batch.points[q].weight[lane] = lane < batch.count ? places[q].weight * J.determinant() * thickness_ : 0.0;
+      if (lane < batch.count) positions[q].push_back(place<dimension, nodes>(positions_, ids, places[q].xi));
+    }
+  }
+  const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
+  const auto first = numbering_.elements.begin() + batch.first;
+  const std::vector<int> elements(first, first + batch.count);
+  batch.laws = laws_of(model, region, elements, positions);
+}
+
+template <int dimension, int nodes, int count>
+Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q, const Vector& u,
+                                                             ShapeGradients& g) const {
+  const Lanes* inverse = batch.points[q].inverse;
+  Gradients H{};
+  for (int a = 0; a < nodes; ++a) {
+    const auto& r = reference_gradients_[static_cast<std::size_t>(q)][static_cast<std::size_t>(a)];
+    for (int k = 0; k < dimension; ++k) {
+      g.g[a][k] = r[0] * inverse[k];
+      for (int d = 1; d < dimension; ++d) g.g[a][k] += r[static_cast<std::size_t>(d)] * inverse[dimension * d + k];
+    }
+    for (int i = 0; i < dimension; ++i) {
+      const Lanes value = gather(batch, a, u.data() + i);
+      for (int k = 0; k < dimension; ++k) H(i, k) += value * g.g[a][k];
+    }
+  }
+  if (dimension == 2) batch.laws.complete(static_cast<std::size_t>(q), H);
+  return H;
+}
+
+template <int dimension, int nodes, int count>
+Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch, const Vector& u, Want want,
+                                                              Vector& force, BlockMatrix* matrix) const {
+  ShapeGradients g[count];
+  Gradients H[count];
+  Response response[count];
+  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, u, g[q]);
+  batch.laws.evaluate(want, {H, count}, {response, count});
+
+  Assembled found;
+  SimplexResult<dimension, nodes> result{};
+  for (int q = 0; q < count; ++q) {
+    const Lanes w = batch.points[q].weight;
+    add_force<dimension, nodes>(response[q].P, w, g[q], result);
+    if (matrix) add_stiffness<dimension, nodes>(response[q].tangent, w, g[q], result);
+    Tensor<Lanes> F = H[q];
+    for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+    const Lanes J = determinant(F), energy = w * response[q].energy;
+    for (int lane = 0; lane < batch.count; ++lane) {
+      found.energy += energy[lane];
+      if (!std::isfinite(energy[lane]) || !std::isfinite(J[lane])) found.finite = false;
+      if (J[lane] < found.smallest_J) {
+        found.smallest_J = J[lane];
+        found.smallest_J_element = numbering_.elements[static_cast<std::size_t>(batch.first + lane)];
+      }
+    }
+  }
+  scatter_force(batch, result, force);
+  if (matrix) scatter_stiffness(batch, result, *matrix);
+  return found;
+}
+
+template <int dimension, int nodes, int count>
+Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
+                                                                 BlockMatrix* matrix) const {
+  Assembled sum;
+  for (const auto& chunks : colours_) {
+    std::vector<Assembled> parts(chunks.size());
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b)
+        merge(parts[c], add_batch(batches_[static_cast<std::size_t>(b)], u, want, force, matrix));
+    });
+    for (const Assembled& part : parts) merge(sum, part);
+  }
+  return sum;
+}
+
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatrix& mass) const {
+  for (const Batch& batch : batches_)
+    for (int lane = 0; lane < batch.count; ++lane) {
+      int ids[nodes];
+      for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
+      ElementMass<nodes> M = consistent_mass<dimension, nodes>(
+          positions_, ids, thickness_ * densities_[static_cast<std::size_t>(batch.region)]);
+      if (lumped) M = lumped_mass<nodes>(M);
+      for (int k = 0; k < nodes * nodes; ++k)
+        mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
+    }
+}
+
+template <int dimension, int nodes, int count>
+std::vector<ElementPoints> SimplexElements<dimension, nodes, count>::points(const Vector& u) const {
+  std::vector<ElementPoints> found(numbering_.elements.size());
+  const Rule<dimension> places = rule();
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    const Batch& batch = batches_[b];
+    ShapeGradients g;
+    for (int q = 0; q < count; ++q) {
+      const Gradients H = gradient(batch, q, u, g);
+      for (int lane = 0; lane < batch.count; ++lane) {
+        ElementPoints& out = found[static_cast<std::size_t>(batch.first + lane)];
+        if (q == 0) out = {};
+        int ids[nodes];
+        for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
+        out.count = q + 1;
+        out.place[q] = place<dimension, nodes>(positions_, ids, places[static_cast<std::size_t>(q)].xi);
+        out.weight[q] = batch.points[q].weight[lane];
+        for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = H.c[k][lane];
+      }
+    }
+  });
+  return found;
+}
+
+template class SimplexElements<1, 2>;
+template class SimplexElements<1, 3>;
+template class SimplexElements<2, 3>;
+template class SimplexElements<2, 6>;
+template class SimplexElements<3, 4>;
+template class SimplexElements<3, 10>;
+
+}  // namespace msml::fe

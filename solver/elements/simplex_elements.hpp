@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Lines, triangles and tetrahedra with linear or quadratic shapes, eight at a time.
+#pragma once
+#include "solver/elements/assembly.hpp"
+#include "solver/elements/chunks.hpp"
+#include "solver/elements/region_laws.hpp"
+#include "solver/elements/shapes.hpp"
+
+namespace msml::fe {
+
+/// Eight elements of one region side by side. Unused lanes of the last batch repeat an element with weight 0.
+template <int dimension, int nodes, int rule_points>
+struct SimplexBatch {
+  struct Point {
+    Lanes inverse[dimension * dimension];  ///< dxi/dX, row by row
+    Lanes weight;                          ///< reference volume of the point
+  };
+  int region = 0, count = 0;
+  int first = 0;                       ///< place in Numbering::elements of lane 0; the lanes follow
+  int node[lanes][nodes];              ///< numbered nodes
+  int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
+  Point points[rule_points];
+  BatchLaws laws;
+};
+
+/// dN_a/dX of eight elements at one point.
+template <int dimension, int nodes>
+struct SimplexGradients {
+  Lanes g[nodes][dimension];
+};
+
+/// Internal force and stiffness of eight elements. Blocks (a, b), a <= b, at b(b+1)/2 + a; dimension x dimension each.
+template <int dimension, int nodes>
+struct SimplexResult {
+  Lanes force[nodes][dimension];
+  Lanes block[nodes * (nodes + 1) / 2][dimension * dimension];
+};
+
+/// Lines lie along x (uniaxial strain: F = diag(F_11, 1, 1)), triangles in a plane of constant z. The gradient has
+/// `dimension` rows and columns, the rest is zero (plane strain) or the law's own (plane stress).
+template <int dimension, int nodes, int count = stiffness_points<dimension, nodes>>
+class SimplexElements final : public Elements {
+ public:
+  explicit SimplexElements(const Model& model);
+  Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
+  void add_mass(bool lumped, ScalarMatrix& mass) const override;
+  std::vector<ElementPoints> points(const Vector& u) const override;
+  const Numbering& numbering() const override { return numbering_; }
+  const PatternPtr& pattern() const override { return pattern_; }
+
+ private:
+  using Batch = SimplexBatch<dimension, nodes, count>;
+  using ShapeGradients = SimplexGradients<dimension, nodes>;
+  static Rule<dimension> rule();
+  void make_batches(const Model& model);
+  void fill(Batch& batch, const Model& model) const;
+  Gradients gradient(const Batch& batch, int q, const Vector& u, ShapeGradients& g) const;
+  Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
+
+  Numbering numbering_;
+  PatternPtr pattern_;
+  Points positions_;  ///< reference positions of the mesh
+  std::vector<double> densities_;
+  double thickness_ = 1;
+  std::vector<Batch> batches_;
+  std::vector<std::vector<Chunk>> colours_;
+  std::array<std::array<std::array<double, dimension>, nodes>, count> reference_gradients_;
+};
+
+}  // namespace msml::fe
