@@ -18,7 +18,11 @@ double Newton::round_off(const Vector& u) const {
   // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1: times the stiffness.
   const Points& points = model_.mesh->points;
   const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
-  const double size = equations_.small_strain() ? 0 : std::cbrt(extent.prod() / effective_.pattern->nodes());
+  const Numbering& numbering = equations_.numbering();
+  double volume = 1.0 / effective_.pattern->nodes();
+  for (int c = 0; c < numbering.components; ++c) volume *= extent[c];
+  const bool exact = equations_.small_strain() || numbering.scalar;
+  const double size = exact ? 0 : std::pow(volume, 1.0 / numbering.components);
   double sum = 0;
   for (const int p : effective_.pattern->diagonal)
     for (int i = 0; i < 3; ++i) {
