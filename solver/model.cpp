@@ -110,8 +110,8 @@ void check_plane(const Model& model) {
       throw Error(fmt::format("region '{}' has a law of {} and another region one of {}: one kind of problem at a time",
                               region.name, scalar ? "displacements" : "a scalar unknown",
                               scalar ? "a scalar unknown" : "displacements"));
-  if (scalar && model.settings.integrator != Integrator::static_)
-    throw Error("a scalar problem (diffusion) is stationary: choose timeIntegration=\"static\"");
+  if (scalar && is_dynamic(model.settings.integrator))
+    throw Error("a scalar problem (diffusion) is stationary: choose timeIntegration=\"static\" or \"quasiStatic\"");
 }
 
 /// Smallest det(dX/dxi) at the quadrature points and the corners, relative to that power of the longest edge.
