@@ -28,6 +28,11 @@ std::string place(const Vec3& x) { return fmt::format("({:g} {:g} {:g})", x[0], 
 void check_region(const Model& model, const Region& region, CellKind& kind, bool& known) {
   const Mesh& mesh = *model.mesh;
   if (!region.law) throw Error(fmt::format("region '{}' has no material law", region.name));
+  if (region.law->incompressible() && model.formulation != Formulation::mixed)
+    throw Error(
+        fmt::format("region '{}': an incompressible {} needs a mesh with formulation=\"mixed\" (quadraticTet). "
+                    "Or give it a bulkModulus or poissonRatio",
+                    region.name, region.law->name()));
   const bool dynamic = is_dynamic(model.settings.integrator);
   if (!std::isfinite(region.density) || region.density < 0 || (dynamic && region.density == 0))
     throw Error(fmt::format("region '{}': massDensity = {} is not {}", region.name, region.density,

@@ -21,6 +21,20 @@ inline Lanes root(Lanes x) {
 /// All lanes equal to x.
 inline Lanes lanes_of(double x) { return Lanes{} + x; }
 
+inline double ln1p(double x) { return std::log1p(x); }
+/// Elementwise ln(1 + x), accurate for small x; NaN below -1.
+inline Lanes ln1p(Lanes x) {
+  for (int i = 0; i < lanes; ++i) x[i] = std::log1p(x[i]);
+  return x;
+}
+
+inline double exp1m(double x) { return std::expm1(x); }
+/// Elementwise exp(x) - 1, accurate for small x.
+inline Lanes exp1m(Lanes x) {
+  for (int i = 0; i < lanes; ++i) x[i] = std::expm1(x[i]);
+  return x;
+}
+
 /// A 3 x 3 matrix of scalars T, row by row.
 template <class T>
 struct Tensor {
@@ -41,6 +55,18 @@ Tensor<T> cofactor(const Tensor<T>& a) {
   return b;
 }
 
+/// The cross product of tensors: cof(A + B) = cof(A) + A x B + cof(B), so that d cof(A) = A x dA.
+template <class T>
+Tensor<T> cross(const Tensor<T>& a, const Tensor<T>& b) {
+  Tensor<T> c;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const int p = (i + 1) % 3, q = (i + 2) % 3, r = (j + 1) % 3, s = (j + 2) % 3;
+      c(i, j) = a(p, r) * b(q, s) + a(q, s) * b(p, r) - a(p, s) * b(q, r) - a(q, r) * b(p, s);
+    }
+  return c;
+}
+
 /// det(A) from A and its cofactor matrix.
 template <class T>
 T determinant(const Tensor<T>& a, const Tensor<T>& cof) {
@@ -50,6 +76,11 @@ T determinant(const Tensor<T>& a, const Tensor<T>& cof) {
 template <class T>
 T determinant(const Tensor<T>& a) {
   return determinant(a, cofactor(a));
+}
+
+template <class T>
+T trace(const Tensor<T>& a) {
+  return a(0, 0) + a(1, 1) + a(2, 2);
 }
 
 /// Sum of the squares of all entries.

@@ -14,12 +14,14 @@ namespace msml::fe {
 /// Displacement gradient H = du/dX = F - I of eight points (H rather than F keeps small strains exact).
 using Gradients = Tensor<Lanes>;
 
-/// What a law gives for eight points, per reference volume.
-struct Response {
-  Lanes energy;       ///< W(F), with W(I) = 0
-  Tensor<Lanes> P;    ///< first Piola stress dW/dF
-  Lanes tangent[45];  ///< d2W/dF2, lower triangle by rows: entry (I, J), I >= J, at I(I+1)/2 + J; I = 3 i + k for F_ik
+/// What a law gives for points of scalar T, per reference volume.
+template <class T>
+struct ResponseOf {
+  T energy;       ///< W(F), with W(I) = 0
+  Tensor<T> P;    ///< first Piola stress dW/dF
+  T tangent[45];  ///< d2W/dF2, lower triangle by rows: entry (I, J), I >= J, at I(I+1)/2 + J; I = 3 i + k for F_ik
 };
+using Response = ResponseOf<Lanes>;
 
 /// What of a Response is wanted; energy and stress always. `tangent` is the law's own choice for Newton's method,
 /// `single_tangent` its choice where each step has one linear solve, `definite_tangent` a positive semidefinite
@@ -42,6 +44,9 @@ struct Split {
   double modulus = std::numeric_limits<double>::infinity();  ///< stress; infinite if incompressible
 };
 
+/// Place of entry (i, j), i >= j, in Response::tangent.
+constexpr int packed_at(int i, int j) { return i * (i + 1) / 2 + j; }
+
 /// A hyperelastic material law. Immutable, so that threads share it. One virtual call serves a whole batch.
 class Law {
  public:
@@ -59,6 +64,12 @@ class Law {
   virtual std::optional<Split> split() const { return std::nullopt; }
   /// True if energy and stress are finite and smooth where det F <= 0.
   virtual bool survives_inversion() const { return false; }
+  /// True if the volume cannot change. Such a law is of use through split() alone: evaluate() leaves out the pressure.
+  virtual bool incompressible() const { return false; }
+  /// True if the response is the same in all directions; otherwise the moduli above are typical ones.
+  virtual bool isotropic() const { return true; }
+  /// The law whose lane k has the parameters of others[k], all of them of this kind; null where it cannot be made.
+  virtual std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> /*others*/) const { return {}; }
   /// Unknowns per node: 3 displacements, or 1 for a scalar problem, whose gradient is row 0 of H.
   virtual int components() const { return 3; }
   /// Sets the entries of H that the law itself determines (plane stress: H_33 such that P_33 = 0).

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "msml/core/error.hpp"
-#include "solver/materials/polar.hpp"
+#include "solver/materials/corotation.hpp"
 
 namespace msml::fe {
 namespace {
@@ -13,21 +13,6 @@ namespace {
 struct Lame {
   double mu, lambda;
 };
-
-constexpr int packed(int i, int j) { return i * (i + 1) / 2 + j; }
-
-template <class T>
-T trace(const Tensor<T>& a) {
-  return a(0, 0) + a(1, 1) + a(2, 2);
-}
-
-template <class T>
-Tensor<T> sym(const Tensor<T>& a) {
-  Tensor<T> s;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) s(i, j) = 0.5 * (a(i, j) + a(j, i));
-  return s;
-}
 
 /// Hooke's law: 2 mu e + lambda tr(e) I.
 template <class T>
@@ -39,96 +24,60 @@ Tensor<T> hooke(Lame m, const Tensor<T>& e) {
   return s;
 }
 
-template <class T>
-T contract(const Tensor<T>& a, const Tensor<T>& b) {
-  T sum = a.c[0] * b.c[0];
-  for (int k = 1; k < 9; ++k) sum += a.c[k] * b.c[k];
-  return sum;
-}
-
-/// a b, or a^T b.
-template <class T>
-Tensor<T> product(const Tensor<T>& a, const Tensor<T>& b, bool transpose_a = false, bool transpose_b = false) {
-  Tensor<T> c;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      T sum{};
-      for (int k = 0; k < 3; ++k) sum += (transpose_a ? a(k, i) : a(i, k)) * (transpose_b ? b(j, k) : b(k, j));
-      c(i, j) = sum;
-    }
-  return c;
-}
-
-/// The polar decomposition F = R U of F = I + H, and U - I.
-template <class T>
-struct Polar {
-  Tensor<T> R, strain;
-};
-
-template <class T>
-Polar<T> decompose(Tensor<T> F) {
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
-  Polar<T> p{polar_rotation(F), {}};
-  p.strain = sym(product(p.R, F, true));
-  for (int i = 0; i < 3; ++i) p.strain(i, i) -= 1.0;
-  return p;
-}
-
-/// dw/d(skew part): with dR = R [G^-1 w]x, [w]x = R^T dF - dF^T R and G = tr(U) I - U, the rotation adds
-/// c T G^-1 T^T to the tangent, c = lambda tr(U - I) - 2 mu, column k of T being R [e_k]x. Returns c G^-1.
-template <class T>
-Tensor<T> spin_stiffness(Lame m, const Tensor<T>& strain) {
-  const T tr = trace(strain), tr_U = tr + 3.0;
-  Tensor<T> G;
-  for (int k = 0; k < 9; ++k) G.c[k] = -strain.c[k];
-  for (int i = 0; i < 3; ++i) G(i, i) += tr_U - 1.0;
-  // G loses rank where the rotation is not unique; there a bounded tangent has to do.
-  const T det = determinant(G), size = tr_U * tr_U + 1e-6;
-  const T shift = det < 1e-9 * size * root(size) ? 1e-3 * root(size) : T{};
-  for (int i = 0; i < 3; ++i) G(i, i) += shift;
-  Tensor<T> Z = cofactor(G);
-  const T scale = (m.lambda * tr - 2 * m.mu) / determinant(G, Z);
-  for (int k = 0; k < 9; ++k) Z.c[k] *= scale;
-  return Z;
-}
-
-/// 2 mu I + lambda r r^T + T Z T^T, r = vec R.
-template <class T>
-void corotated_tangent(Lame m, const Tensor<T>& R, const Tensor<T>& Z, T* A) {
-  T spin[9][3] = {}, spin_Z[9][3];
-  for (int k = 0; k < 3; ++k) {
-    const int p = (k + 1) % 3, q = (k + 2) % 3;
-    for (int i = 0; i < 3; ++i) {
-      spin[3 * i + p][k] = R(i, q);
-      spin[3 * i + q][k] = -R(i, p);
-    }
-  }
-  for (int I = 0; I < 9; ++I)
-    for (int k = 0; k < 3; ++k) spin_Z[I][k] = spin[I][0] * Z(0, k) + spin[I][1] * Z(1, k) + spin[I][2] * Z(2, k);
-  for (int I = 0; I < 9; ++I) {
-    for (int J = 0; J <= I; ++J)
-      A[packed(I, J)] = m.lambda * R.c[I] * R.c[J] + spin_Z[I][0] * spin[J][0] + spin_Z[I][1] * spin[J][1] +
-                        spin_Z[I][2] * spin[J][2];
-    A[packed(I, I)] += 2 * m.mu;
-  }
-}
-
 /// The constant tangent of small strain: dsigma_ik/dH_jl = mu (d_ij d_kl + d_il d_kj) + lambda d_ik d_jl.
 template <class T>
 void small_tangent(Lame m, T* A) {
   for (int I = 0; I < 9; ++I)
     for (int J = 0; J <= I; ++J) {
       const int i = I / 3, k = I % 3, j = J / 3, l = J % 3;
-      A[packed(I, J)] = T{} + (m.mu * ((i == j && k == l) + (i == l && k == j)) + m.lambda * (i == k && j == l));
+      A[packed_at(I, J)] = T{} + (m.mu * ((i == j && k == l) + (i == l && k == j)) + m.lambda * (i == k && j == l));
     }
 }
 
+/// Whether the tangent is the derivative of the stress in the corotated law.
+bool wants_exact(const LinearElastic& data, Want want) {
+  return (want == Want::tangent && data.tangent != TangentKind::rotated) ||
+         (want == Want::single_tangent && data.tangent == TangentKind::exact);
+}
+
+/// tr e as if it were an energy: tr H, or tr(U - I).
+class TraceConstraint final : public Law {
+ public:
+  explicit TraceConstraint(const LinearElastic& data) : data_(data) {}
+
+  void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
+    const bool small = data_.strain == Strain::small;
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      Response& out = responses[i];
+      const Polar<Lanes> p = small ? Polar<Lanes>{Tensor<Lanes>{}, sym(gradients[i])} : decompose(gradients[i]);
+      out.energy = trace(p.strain);
+      out.P = p.R;
+      for (int k = 0; k < 3 && small; ++k) out.P(k, k) += 1.0;
+      if (want == Want::stress) continue;
+      const bool exact = !small && wants_exact(data_, want);
+      corotated_tangent(0, 0, p.R, exact ? spin_stiffness(lanes_of(1), p.strain) : Tensor<Lanes>{}, out.tangent);
+    }
+  }
+  void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      const Polar<Lanes> p = decompose(gradients[i]);
+      measures[i] = {.cauchy = p.R, .strain = p.strain, .energy = trace(p.strain)};
+    }
+  }
+  std::string name() const override { return "trace"; }
+  double poisson_ratio() const override { return 0; }
+  double shear_modulus() const override { return 0; }
+  bool exact_tangent() const override { return data_.strain == Strain::small || wants_exact(data_, Want::tangent); }
+  bool survives_inversion() const override { return true; }
+  bool small_strain() const override { return data_.strain == Strain::small; }
+
+ private:
+  LinearElastic data_;
+};
+
 class LinearLaw final : public Law {
  public:
-  explicit LinearLaw(const LinearElastic& data)
-      : data_(data),
-        lame_{data.youngs_modulus / (2 * (1 + data.poisson_ratio)),
-              data.youngs_modulus * data.poisson_ratio / ((1 + data.poisson_ratio) * (1 - 2 * data.poisson_ratio))} {}
+  LinearLaw(const LinearElastic& data, Lame lame) : data_(data), lame_(lame) {}
 
   void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i)
@@ -158,15 +107,17 @@ class LinearLaw final : public Law {
   std::string name() const override { return "linearElasticMaterial"; }
   double poisson_ratio() const override { return data_.poisson_ratio; }
   double shear_modulus() const override { return lame_.mu; }
-  bool exact_tangent() const override { return data_.strain == Strain::small || exact(Want::tangent); }
+  bool exact_tangent() const override { return data_.strain == Strain::small || wants_exact(data_, Want::tangent); }
   bool small_strain() const override { return data_.strain == Strain::small; }
-
- private:
-  bool exact(Want want) const {
-    return (want == Want::tangent && data_.tangent != TangentKind::rotated) ||
-           (want == Want::single_tangent && data_.tangent == TangentKind::exact);
+  bool survives_inversion() const override { return true; }
+  /// g = tr e, with modulus lambda.
+  std::optional<Split> split() const override {
+    return Split{.rest = std::make_shared<LinearLaw>(data_, Lame{lame_.mu, 0}),
+                 .constraint = std::make_shared<TraceConstraint>(data_),
+                 .modulus = lame_.lambda};
   }
 
+ private:
   void small(Want want, const Gradients& H, Response& out) const {
     const Tensor<Lanes> e = sym(H);
     out.P = hooke(lame_, e);
@@ -180,12 +131,13 @@ class LinearLaw final : public Law {
     out.energy = 0.5 * contract(stress, strain);
     out.P = product(R, stress);
     if (want == Want::stress) return;
-    if (exact(want)) {
-      corotated_tangent(lame_, R, spin_stiffness(lame_, strain), out.tangent);
+    if (wants_exact(data_, want)) {
+      const Lanes c = lame_.lambda * trace(strain) - 2 * lame_.mu;
+      corotated_tangent(2 * lame_.mu, lame_.lambda, R, spin_stiffness(c, strain), out.tangent);
     } else {
       Tensor<Lanes> Z{};
       for (int i = 0; i < 3; ++i) Z(i, i) -= lame_.mu;
-      corotated_tangent(lame_, R, Z, out.tangent);
+      corotated_tangent(2 * lame_.mu, lame_.lambda, R, Z, out.tangent);
     }
   }
 
@@ -200,7 +152,8 @@ std::shared_ptr<const Law> make_linear_elastic(const LinearElastic& data) {
     throw Error(fmt::format("youngModulus = {} is not > 0", data.youngs_modulus));
   if (!open(-1, 0.5).contains(data.poisson_ratio))
     throw Error(fmt::format("poissonRatio = {} is not in (-1, 0.5)", data.poisson_ratio));
-  return std::make_shared<LinearLaw>(data);
+  const double E = data.youngs_modulus, nu = data.poisson_ratio;
+  return std::make_shared<LinearLaw>(data, Lame{E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))});
 }
 
 Factory<std::shared_ptr<const Law>> linear_elastic_material() {

@@ -19,11 +19,12 @@ struct NamedLaw {
 };
 
 /// A record with each number inside its range: 1000 where only positive, 13/15 of the way where bounded (Poisson .3).
+/// What is optional is given too, where it is a number.
 inline Record sample_record(const Description& description) {
   Record record{.description = &description};
   for (const Slot& slot : description.slots()) {
     Value value = slot.fallback;
-    if (slot.required && slot.type == Type::number)
+    if (type(slot.fallback) == Type::nothing && slot.type == Type::number)
       value = std::isfinite(slot.range.high) ? slot.range.low + 13.0 / 15 * (slot.range.high - slot.range.low) : 1000.0;
     record.values.push_back(value);
     record.given.push_back(slot.required);

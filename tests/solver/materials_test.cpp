@@ -14,13 +14,16 @@ namespace {
 using namespace testing;
 
 /// Near rest, strongly stretched, squeezed, and inverted; away from places where the rotation is not unique.
-std::vector<Mat3> sample_gradients(Random& random) {
+std::vector<Mat3> sample_gradients(Random& random, const Law& law) {
   std::vector<Mat3> samples;
   for (int k = 0; k < 5; ++k) {
     samples.push_back(Mat3::Identity() + 0.1 * random.matrix());
-    samples.push_back(random.stretched(3, 1.5, 0.4));
-    samples.push_back(random.stretched(0.2, 1.1, 0.1));
-    samples.push_back(random.stretched(1.3, 0.9, -0.4));
+    samples.push_back(random.stretched(2, 1.5, 0.4));
+    samples.push_back(random.stretched(0.5, 1.1, 0.4));
+    if (law.survives_inversion()) {
+      samples.push_back(random.stretched(0.2, 1.1, 0.1));
+      samples.push_back(random.stretched(1.3, 0.9, -0.4));
+    }
   }
   return samples;
 }
@@ -37,7 +40,7 @@ TEST(EveryMaterial, StressIsDerivativeOfEnergy) {
   Random random;
   const double h = 1e-5;  // central differences: error h^2 |W'''| + 1e-16 |W| / h, both about 1e-10 of the modulus
   for (const auto& [name, law] : all_laws())
-    for (const Mat3& F : sample_gradients(random)) {
+    for (const Mat3& F : sample_gradients(random, *law)) {
       const Mat3 direction = random.matrix();
       const double slope =
           (evaluate(*law, F + h * direction).energy - evaluate(*law, F - h * direction).energy) / (2 * h);
@@ -53,7 +56,7 @@ TEST(EveryMaterial, TangentIsDerivativeOfStress) {
   for (const auto& [name, law] : all_laws()) {
     if (!law->exact_tangent()) continue;
     ++checked;
-    for (const Mat3& F : sample_gradients(random)) {
+    for (const Mat3& F : sample_gradients(random, *law)) {
       const Mat3 d = random.matrix();
       const Mat3 slope = (evaluate(*law, F + h * d).P - evaluate(*law, F - h * d).P) / (2 * h);
       const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> row_major = d;
@@ -69,7 +72,7 @@ TEST(EveryMaterial, TangentIsDerivativeOfStress) {
 TEST(EveryMaterial, HasASemidefiniteTangentForIndefinitePlaces) {
   Random random;
   for (const auto& [name, law] : all_laws())
-    for (const Mat3& F : sample_gradients(random)) {
+    for (const Mat3& F : sample_gradients(random, *law)) {
       const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> solver(
           evaluate(*law, F, Want::definite_tangent).tangent);
       EXPECT_GT(solver.eigenvalues().minCoeff(), -1e-12 * solver.eigenvalues().maxCoeff()) << name;
@@ -82,7 +85,7 @@ TEST(EveryMaterial, IsObjective) {
   for (const auto& [name, law] : all_laws()) {
     if (law->small_strain()) continue;
     ++checked;
-    for (const Mat3& F : sample_gradients(random)) {
+    for (const Mat3& F : sample_gradients(random, *law)) {
       const Mat3 Q = random.rotation();
       const Point one = evaluate(*law, F), two = evaluate(*law, Q * F);
       EXPECT_NEAR(one.energy, two.energy, 1e-12 * law->shear_modulus() * (1 + F.squaredNorm())) << name;
@@ -107,7 +110,7 @@ TEST(EveryMaterial, ApproachesHookesLawForSmallStrain) {
 TEST(EveryMaterial, GivesTheSameInEveryLane) {
   Random random;
   for (const auto& [name, law] : all_laws())
-    for (const Mat3& F : sample_gradients(random))
+    for (const Mat3& F : sample_gradients(random, *law))
       for (const int lane : {0, 7}) EXPECT_EQ(evaluate(*law, F).P, evaluate(*law, F, Want::tangent, lane).P) << name;
 }
 

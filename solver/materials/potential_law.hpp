@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The law of an energy written in invariants, with an energy of volume changes beside it.
+#pragma once
+#include <utility>
+#include <vector>
+
+#include "solver/materials/invariants.hpp"
+#include "solver/materials/semidefinite.hpp"
+#include "solver/materials/volumetric.hpp"
+
+namespace msml::fe {
+
+/// What a law says of itself.
+struct LawFacts {
+  std::string name;          ///< the tag
+  double shear_modulus = 0;  ///< of the small-strain limit, stress
+  double poisson_ratio = 0;  ///< of the small-strain limit
+  bool survives_inversion = false;
+  bool isotropic = true;
+  bool incompressible = false;
+};
+
+/// Energy, stress and (if wanted) tangent of `kernel` + `volumetric` at F = I + H. A Kernel<T> names its `Variables`,
+/// and kernel(variables) is the energy as a jet in them. At rest the jet's slope by j must be 0.
+template <class Kernel, class T>
+void respond(const Kernel& kernel, const Volumetric<T>& volumetric, const Tensor<T>& H, bool tangent,
+             ResponseOf<T>& out) {
+  using Variables = typename Kernel::Variables;
+  constexpr int count = Variables::count, volume = Variables::volume;
+  const Invariants<T> invariants(H);
+  auto w = kernel(Variables(invariants));
+  const Function<T> U = volumetric.at(invariants.j);
+  w += Jet<T, count>::of_variable(volume, U.value, U.slope, U.curvature);
+  Tensor<T> slopes[count];
+  Variables::slopes(invariants, slopes);
+  out.energy = w.value;
+  for (int k = 0; k < 9; ++k) {
+    out.P.c[k] = w.first[0] * slopes[0].c[k];
+    for (int x = 1; x < count; ++x) out.P.c[k] += w.first[x] * slopes[x].c[k];
+  }
+  if (!tangent) return;
+  for (T& entry : out.tangent) entry = T{};
+  add_products(w, slopes, out.tangent);
+  Variables::add_curvature(invariants, w, out.tangent);
+}
+
+/// Cauchy stress P F^T / J and Green-Lagrange strain (F^T F - I)/2 at F = I + H from energy and P.
+void measure_hyperelastic(const Gradients& H, const Response& response, Measures& out);
+
+/// The volume measure g of a split as if it were an energy.
+std::shared_ptr<const Law> make_volume_constraint(VolumeMeasure measure);
+
+/// The law of a kernel (a class template over the scalar; `each(f)` calls f for each of its parameters).
+template <template <class> class Kernel>
+class PotentialLaw final : public Law {
+ public:
+  PotentialLaw(Kernel<Lanes> kernel, Volumetric<Lanes> volumetric, LawFacts facts)
+      : kernel_(std::move(kernel)), volumetric_(volumetric), facts_(std::move(facts)) {}
+
+  void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      respond(kernel_, volumetric_, gradients[i], want != Want::stress, responses[i]);
+      if (want == Want::definite_tangent) make_semidefinite(responses[i]);
+    }
+  }
+  void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      Response response;
+      respond(kernel_, volumetric_, gradients[i], false, response);
+      measure_hyperelastic(gradients[i], response, measures[i]);
+    }
+  }
+  std::string name() const override { return facts_.name; }
+  double poisson_ratio() const override { return facts_.poisson_ratio; }
+  double shear_modulus() const override { return facts_.shear_modulus; }
+  bool survives_inversion() const override { return facts_.survives_inversion; }
+  bool isotropic() const override { return facts_.isotropic; }
+  bool incompressible() const override { return facts_.incompressible; }
+
+  std::optional<Split> split() const override {
+    if (volumetric_.measure == VolumeMeasure::none) return std::nullopt;
+    LawFacts facts = facts_;
+    facts.incompressible = false;
+    Split split{.rest = std::make_shared<PotentialLaw>(kernel_, Volumetric<Lanes>{}, facts),
+                .constraint = make_volume_constraint(volumetric_.measure)};
+    if (!facts_.incompressible) split.modulus = volumetric_.modulus[0];
+    return split;
+  }
+
+  std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {
+    auto result = std::make_shared<PotentialLaw>(*this);
+    const std::vector<Lanes*> into = result->parameters();
+    for (std::size_t lane = 0; lane < others.size(); ++lane) {
+      const auto* other = dynamic_cast<const PotentialLaw*>(others[lane].get());
+      if (other == nullptr || other->volumetric_.measure != volumetric_.measure) return {};
+      PotentialLaw copy = *other;
+      const std::vector<Lanes*> from = copy.parameters();
+      if (from.size() != into.size()) return {};
+      for (std::size_t p = 0; p < from.size(); ++p) (*into[p])[lane] = (*from[p])[lane];
+    }
+    return result;
+  }
+
+ private:
+  std::vector<Lanes*> parameters() {
+    std::vector<Lanes*> all{&volumetric_.modulus};
+    kernel_.each([&](Lanes& parameter) { all.push_back(&parameter); });
+    return all;
+  }
+
+  Kernel<Lanes> kernel_;
+  Volumetric<Lanes> volumetric_;
+  LawFacts facts_;
+};
+
+}  // namespace msml::fe
