@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
 #include "tests/operators/shared/files.hpp"
 #include "tests/operators/shared/shapes.hpp"
@@ -216,8 +217,11 @@ TEST_P(DamagedMeshFile, IsAnErrorOrAValidMeshAndPrintsNothing) {
     test::put_bytes(bad, damaged);
     test::read_error(bad, Type::mesh);
   }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  // A sanitizer says when it refuses an absurd allocation; that is its own line, not ours.
+  static const std::regex refused("==[0-9]+==WARNING: AddressSanitizer failed to allocate [^\n]*\n");
+  const std::string printed = std::regex_replace(testing::internal::GetCapturedStderr(), refused, "");
   EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(printed, "");
   // A cut in trailing blanks goes unnoticed, and an OBJ file, which says no counts, may end behind any face.
   EXPECT_GE(errors, GetParam() == ".obj" ? cut / 3 : cut * 9 / 10);
 }
