@@ -21,6 +21,10 @@ std::string advice(const Run& run, Stop stop) {
       return "the body buckles or the equilibrium is unstable: try smaller loads, or a dynamic timeIntegration";
     case Stop::linear_solver_limit:
       return "try linearSolver=\"direct\", another preconditioner, a better mesh or poissonRatio further from 0.5";
+    case Stop::collapsed:
+      return "the body rests with a part turned inside out or crushed to nothing, a trap of the energy: start from a "
+             "slightly changed state, take a law that pushes back (neoHookeanMaterial form=\"stable\", or "
+             "inversion=\"clamped\"), a dynamic timeIntegration, or allowInverted=\"true\" if it is meant";
     case Stop::singular:
       return "a part of the body can move freely: fix it, or join parts that touch only at a node or an edge";
     case Stop::out_of_memory:

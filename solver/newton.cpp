@@ -39,6 +39,35 @@ Stop stop_of(LinearStatus status) {
   return Stop::converged;
 }
 
+constexpr double shift = 1e-8;  // far above round-off, far below the softest motion that strains the body
+
+void shift_diagonal(BlockMatrix& A) {
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) A.values[9 * static_cast<std::size_t>(p) + 4 * i] *= 1 + shift;
+}
+
+/// A x = b with `shifted` factorised instead of the singular A: refines while that helps.
+LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const Mask& fixed, const Vector& b,
+                            double tolerance, Vector& x) {
+  Vector rest = b, correction, product;
+  x = Vector::Zero(b.size());
+  double before = free_norm(b, fixed);
+  const double target = tolerance * before;
+  for (int round = 0; round < 6; ++round) {
+    const LinearStatus status = shifted.solve(rest, tolerance, correction);
+    if (status != LinearStatus::done) return status;
+    multiply(A, Vector(x + correction), product);
+    const Vector left = b - product;
+    const double now = free_norm(left, fixed);
+    if (round > 0 && !(now < before)) break;
+    x += correction;
+    rest = left;
+    before = now;
+    if (now <= target) break;
+  }
+  return LinearStatus::done;
+}
+
 }  // namespace
 
 Newton::Newton(const Model& model, const Equations& equations)
@@ -49,6 +78,12 @@ Newton::Newton(const Model& model, const Equations& equations)
       effective_(equations.elements().pattern()),
       want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {
   searching_ = model.settings.line_search;
+  survives_.assign(model.mesh->kinds.size(), 0);
+  for (const Region& region : model.regions)
+    for (const int e : region.elements) survives_[static_cast<std::size_t>(e)] = region.law->survives_inversion();
+  for (const Region& region : model.regions)
+    barrier_ = barrier_ || (!region.law->survives_inversion() && !region.law->small_strain());
+  energetic_ = !equations.has_followers() && !equations.has_history() && model.formulation == Formulation::standard;
   if (equations.has_followers()) followers_ = std::make_unique<BlockMatrix>(equations.elements().pattern());
 }
 
@@ -97,11 +132,13 @@ LinearStatus Newton::factor(const Increment& increment) {
     if (increment.damping_matrix)
       add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
   }
+  if (rigid_free_) shift_diagonal(effective_);
   return linear_->factor(effective_, increment.fixed);
 }
 
 LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
   const double tolerance = model_.settings.linear_tolerance;
+  if (rigid_free_ && !followers_) return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
   if (!followers_) return linear_->solve(right, tolerance, step);
   Vector extra;
   const LinearMap whole = [&](const Vector& x, Vector& y) {
@@ -119,33 +156,38 @@ LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vect
   return factored == LinearStatus::done ? unsymmetric_->solve(right, tolerance, step) : factored;
 }
 
+LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step) {
+  const Stopwatch watch(seconds_linear_);
+  const LinearStatus status = factor(increment);
+  if (status != LinearStatus::done) return status;
+  Vector right = residual / increment.motion.force_share, product;
+  if (jump.size() > 0) {
+    multiply(tangent_, jump, product);
+    right -= product;
+    if (followers_) {
+      multiply(*followers_, jump, product);
+      right -= product;
+    }
+  }
+  ++solves_;
+  return solve(increment, right, step);
+}
+
 LinearStatus Newton::direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                                Vector& step) {
-  for (const bool definite : {false, true}) {
-    if (definite) {
-      evaluate(increment, u, Want::definite_tangent, true);
-      tangent_current_ = false;
-    }
-    const Stopwatch watch(seconds_linear_);
-    LinearStatus status = factor(increment);
-    if (status == LinearStatus::done) {
-      Vector right = residual / increment.motion.force_share, product;
-      if (jump.size() > 0) {
-        multiply(tangent_, jump, product);
-        right -= product;
-        if (followers_) {
-          multiply(*followers_, jump, product);
-          right -= product;
-        }
-      }
-      ++solves_;
-      status = solve(increment, right, step);
-    }
+  const Definiteness choice = model_.settings.definiteness;
+  if (choice != Definiteness::always && !insist_definite_) {
+    const LinearStatus status = attempt(increment, jump, residual, step);
     // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
-    if (!definite) indefinite_ = status == LinearStatus::not_positive_definite;
-    if (status != LinearStatus::not_positive_definite) return status;
+    indefinite_ = status == LinearStatus::not_positive_definite;
+    if (!indefinite_ || choice == Definiteness::never) return status;
   }
-  return LinearStatus::singular;  // a semidefinite matrix without a factorisation
+  evaluate(increment, u, Want::definite_tangent, true);
+  tangent_current_ = false;
+  definite_taken_ = true;
+  const LinearStatus status = attempt(increment, jump, residual, step);
+  // A semidefinite matrix without a factorisation.
+  return status == LinearStatus::not_positive_definite ? LinearStatus::singular : status;
 }
 
 void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix) {
@@ -157,10 +199,11 @@ void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations
 Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
   const Stop state = state_verdict();
   if (state != Stop::converged) return state;
-  if (increment.motion.dynamic() || equations_.small_strain() || model_.settings.newton_iterations == 1)
+  if (increment.motion.dynamic() || equations_.small_strain() || model_.settings.newton_iterations == 1 || rigid_free_)
     return Stop::converged;
-  if (result.residuals.size() <= 2 && want_ == Want::tangent && !indefinite_) {
-    // The last factorisation may be of a state far from this one.
+  const bool far = result.residuals.size() <= 2 || definite_taken_;
+  if (far && want_ == Want::tangent && !indefinite_) {
+    // The last factorisation of the exact tangent may be of a state far from this one.
     evaluate(increment, result.u, want_, true);
     const Stopwatch watch(seconds_linear_);
     indefinite_ = linear_->factor(tangent_, increment.fixed) == LinearStatus::not_positive_definite;
@@ -168,48 +211,72 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }
 
-IncrementResult Newton::run(const Increment& increment) {
-  const int limit = model_.settings.newton_iterations;
+void Newton::take_jump(const Increment& increment, const Vector& jump, const Vector& step, Vector& u) {
+  const Vector start = u;
+  u = start + jump + step;
+  evaluate(increment, u, want_, false);
+  if (!searching_ || !energetic_ || (forces_.found.finite && forces_.found.smallest_J > 0)) return;
+  // The tangent of the start may be worth nothing where the supports go: the better of both guesses is gone on from.
+  const bool finite = forces_.found.finite;
+  const double energy = forces_.found.energy;
+  evaluate(increment, start + jump, want_, false);
+  if (forces_.found.finite && (!finite || forces_.found.energy < energy))
+    u = start + jump;
+  else
+    evaluate(increment, u, want_, false);
+}
+
+IncrementResult Newton::begin(const Increment& increment, const Vector& jump) {
   IncrementResult result;
   Vector& u = result.u = increment.start;
-  Vector jump = Vector::Zero(u.size());
-  for (Eigen::Index k = 0; k < u.size(); ++k)
-    if (increment.fixed[static_cast<std::size_t>(k)]) jump[k] = increment.target[k] - u[k];
   if (tangent_current_)
     equations_.evaluate_loads(u, increment.loads, forces_, followers_.get());
   else
     prepare(u, increment.loads);
-  indefinite_ = false;
+  indefinite_ = definite_taken_ = insist_definite_ = false;
+  round_off_ = last_step_ = 0;
   // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
   equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
                              increment.damping_matrix, forces_);
-  Vector residual = this->residual(increment), step;
-  note_residual(increment, residual, result);
-  if (!std::isfinite(result.residuals.back())) return result.stop = Stop::diverged, result;
+  note_residual(increment, residual(increment), result);
+  return result;
+}
+
+IncrementResult Newton::run(const Increment& increment) {
+  const int limit = model_.settings.newton_iterations;
+  Vector jump = Vector::Zero(increment.start.size()), step;
+  for (Eigen::Index k = 0; k < jump.size(); ++k)
+    if (increment.fixed[static_cast<std::size_t>(k)]) jump[k] = increment.target[k] - increment.start[k];
   const bool moved = jump.squaredNorm() > 0;
-  round_off_ = 0;
-  if (!moved && limit > 1 && accepted(result)) {
-    result.stop = verdict(increment, result);
-    return result;
-  }
+  IncrementResult result = begin(increment, jump);
+  Vector& u = result.u;
+  if (!std::isfinite(result.residuals.back())) return result.stop = Stop::diverged, result;
+  if (!moved && limit > 1 && accepted(increment, result)) return result.stop = verdict(increment, result), result;
+  Vector residual = this->residual(increment);
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);
     ++iterations_;
     const bool moving = iteration == 0 && moved;
+    definite_taken_ = false;
     const LinearStatus status = direction(increment, u, moving ? jump : Vector(), residual, step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
-    tangent_current_ = false;
-    if (iteration == 0) round_off_ = round_off(u + jump + step);
-    if (moving || limit == 1) {
-      u += jump * (iteration == 0) + step;
-      if (limit == 1) return result;
+    tangent_current_ = insist_definite_ = false;
+    round_off_ = round_off(u + jump * moving + step);
+    if (limit == 1) return u += jump + step, result;
+    double share = 1;
+    if (moving)
+      take_jump(increment, jump, step, u);
+    else
+      share = line_search(increment, step, residual, u);
+    if (share == 0) {
+      if (definite_taken_ || !energetic_) return result.stop = Stop::diverged, result;
+      insist_definite_ = true;
       evaluate(increment, u, want_, false);
-    } else if (line_search(increment, step, residual, u) == 0) {
-      return result.stop = Stop::diverged, result;
     }
+    last_step_ = share == 1 && !definite_taken_ ? step.cwiseAbs().maxCoeff() : std::numeric_limits<double>::infinity();
     residual = this->residual(increment);
     note_residual(increment, residual, result);
-    if (accepted(result)) return result.stop = verdict(increment, result), result;
+    if (accepted(increment, result)) return result.stop = verdict(increment, result), result;
     if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
       return result.stop = Stop::diverged, result;
   }

@@ -23,6 +23,7 @@ struct IncrementResult {
   Vector u;                       ///< displacement at the end (or where it stopped)
   std::vector<double> residuals;  ///< norm of the free residual after each iteration, the first before any
   double scale = 0;               ///< largest of the norms of external, internal, inertia and reaction forces
+  double largest_scale = 0;       ///< of the scales over the iterations
   int worst_element = -1;         ///< cell id: the smallest det F
   double worst_J = 0;
   int worst_node = -1;  ///< mesh point with the largest residual
@@ -45,6 +46,8 @@ class Newton {
 
   /// Forces and tangent at u, which the next increment starts from unless forget() is called.
   void prepare(const Vector& u, const ScaledLoads& loads);
+  /// Rigid motions are free in the increments to come: the matrix is shifted a little, and the solution refined.
+  void free_rigid_motions(bool free) { rigid_free_ = free; }
   /// Forces at u alone.
   void look(const Vector& u, const ScaledLoads& loads);
   void forget() { tangent_current_ = false; }
@@ -53,7 +56,8 @@ class Newton {
   /// Adds inertia and damping to the forces, or none.
   void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix);
   void rest();
-  /// converged, or what is wrong with the state evaluated last: not finite, or an inverted element.
+  /// converged, or what is wrong with the state evaluated last: not finite, an element inverted whose law does not
+  /// survive that, or in statics a collapsed one.
   Stop state_verdict() const;
   /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
   Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed);
@@ -71,8 +75,12 @@ class Newton {
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
+  LinearStatus attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step);
+  IncrementResult begin(const Increment& increment, const Vector& jump);
+  void take_jump(const Increment& increment, const Vector& jump, const Vector& step, Vector& u);
+  /// The share of `direction` that was taken: u and the forces are at its end. 0: no share makes u better.
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
-  bool accepted(const IncrementResult& result) const;
+  bool accepted(const Increment& increment, const IncrementResult& result) const;
   double round_off(const Vector& u) const;
   void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
   Stop verdict(const Increment& increment, IncrementResult& result);
@@ -87,6 +95,13 @@ class Newton {
   Want want_;
   bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from
   bool searching_ = true;         ///< the line search is on
+  bool energetic_ = true;         ///< forces are derivatives of an energy, which the line search looks at
+  bool barrier_ = false;          ///< a law does not survive inversion
+  bool rigid_free_ = false;       ///< the matrix is singular, as nothing holds the body
+  bool insist_definite_ = false;  ///< the exact tangent led nowhere in the last iteration
+  double last_step_ = 0;          ///< largest entry of the last step, if it was a full one with the exact tangent
+  std::vector<char> survives_;    ///< of each cell: its law survives inversion
+  bool definite_taken_ = false;   ///< the last step came from the semidefinite tangent
   bool indefinite_ = false;       ///< the last exact tangent could not be factorised
   double round_off_ = 0;          ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;

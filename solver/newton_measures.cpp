@@ -37,6 +37,7 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
   result.residuals.push_back(norm);
   const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
   result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
+  result.largest_scale = std::max(result.largest_scale, result.scale);
   result.worst_element = forces_.found.smallest_J_element;
   result.worst_J = forces_.found.smallest_J;
   double worst = -1;
@@ -47,17 +48,28 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
     }
 }
 
-bool Newton::accepted(const IncrementResult& result) const {
-  const double norm = result.residuals.back();
-  return std::isfinite(norm) && std::isfinite(result.scale) &&
-         norm <= std::max(model_.settings.tolerance * result.scale, round_off_);
+bool Newton::accepted(const Increment& increment, const IncrementResult& result) const {
+  const double norm = result.residuals.back(), tolerance = model_.settings.tolerance;
+  if (!std::isfinite(norm) || !std::isfinite(result.scale)) return false;
+  if (norm <= std::max(tolerance * result.scale, round_off_)) return true;
+  // Where all forces vanish in the end they are no scale: a full step of exact Newton that is tiny beside the way gone
+  // is the last one. Its own square is what is left then.
+  if (last_step_ == 0 || result.residuals.size() < 3) return false;
+  const double way = std::max(increment.start.cwiseAbs().maxCoeff(), result.u.cwiseAbs().maxCoeff());
+  return last_step_ <= 0.01 * tolerance * way && norm <= tolerance * result.largest_scale;
 }
 
 Stop Newton::state_verdict() const {
-  if (!forces_.found.finite) return Stop::diverged;
-  if (!equations_.small_strain() && forces_.found.smallest_J <= 0 && !model_.settings.allow_inverted)
-    return Stop::inverted_element;
-  return Stop::converged;
+  const Assembled& found = forces_.found;
+  if (!found.finite) return Stop::diverged;
+  if (equations_.small_strain() || model_.settings.allow_inverted || found.smallest_J_element < 0)
+    return Stop::converged;
+  if (!survives_[static_cast<std::size_t>(found.smallest_J_element)])
+    return found.smallest_J <= 0 ? Stop::inverted_element : Stop::converged;
+  // Motion may pass through inversion; an equilibrium there is a trap. F = 0 comes with det F of either sign.
+  constexpr double flat = 1e-9;
+  const bool trapped = !is_dynamic(model_.settings.integrator) && found.smallest_J <= flat;
+  return trapped ? Stop::collapsed : Stop::converged;
 }
 
 void Newton::report(Outcome& outcome) const {
