@@ -56,9 +56,9 @@ void Equations::evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces
                                BlockMatrix* followers) const {
   forces.external = Vector::Zero(size());
   if (followers) followers->set_zero();
-  for (const auto& [set, scale, time] : loads) {
-    forces.external += scale * set->dead;
-    add_followers(*set, scale, X_, u, forces.external, followers);
+  for (const ActingLoads& acting : loads) {
+    add_dead(acting, forces.external);
+    add_followers(acting, X_, u, forces.external, followers);
   }
 }
 

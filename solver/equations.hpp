@@ -9,11 +9,6 @@
 
 namespace msml::fe {
 
-/// Loads of a step that act at a time: constants with their share, functions of time as they are then.
-struct ActingLoads {
-  const LoadSet* set;
-  double share, time;
-};
 /// Loads that act together.
 using ScaledLoads = std::vector<ActingLoads>;
 

@@ -208,26 +208,21 @@ void check_settings(const Settings& s) {
 }
 
 void check_nodes(const Mesh& mesh, const char* what, const std::string& label, const std::vector<int>& nodes,
-                 const std::vector<Vec3>& values) {
+                 const std::vector<Vec3>& values, bool by_function) {
   for (const int n : nodes)
     if (n < 0 || n >= mesh.point_count())
       throw Error(
           fmt::format("{} '{}' names node {}, but the mesh has nodes 0 to {}", what, label, n, mesh.point_count() - 1));
-  if (values.size() != 1 && values.size() != nodes.size())
+  if (!by_function && values.size() != 1 && values.size() != nodes.size())
     throw Error(fmt::format("{} '{}' has {} values for {} nodes: one for all, or one each", what, label, values.size(),
                             nodes.size()));
   for (const Vec3& v : values)
     if (!v.allFinite()) throw Error(fmt::format("{} '{}' has a value that is not finite: {}", what, label, place(v)));
 }
 
-void check_face_load(const Model& model, const FaceLoad& load) {
-  const Mesh& mesh = *model.mesh;
-  for (const Face& face : load.faces)
-    if (face.element < 0 || face.element >= mesh.cell_count() || face.local < 0 ||
-        mesh.kinds[static_cast<std::size_t>(face.element)] != element_kind(model) ||
-        face.local >= side_count(element_kind(model)))
-      throw Error(fmt::format("load '{}' names face {} of cell {}, which is no side of an element (a {})", load.name,
-                              face.local, face.element, name(element_kind(model))));
+void check_face_values(const FaceLoad& load) {
+  const bool by_function = load.traction_function || load.pressure_function;
+  if (by_function) return;
   const std::size_t count = load.pressures.empty() ? load.tractions.size() : load.pressures.size();
   if (!load.pressures.empty() && !load.tractions.empty())
     throw Error(fmt::format("load '{}' has both pressures and tractions", load.name));
@@ -240,14 +235,49 @@ void check_face_load(const Model& model, const FaceLoad& load) {
     if (!t.allFinite()) throw Error(fmt::format("load '{}' has traction {}", load.name, place(t)));
 }
 
+void check_face_load(const Model& model, const FaceLoad& load) {
+  const Mesh& mesh = *model.mesh;
+  for (const Face& face : load.faces)
+    if (face.element < 0 || face.element >= mesh.cell_count() || face.local < 0 ||
+        mesh.kinds[static_cast<std::size_t>(face.element)] != element_kind(model) ||
+        face.local >= side_count(element_kind(model)))
+      throw Error(fmt::format("load '{}' names face {} of cell {}, which is no side of an element (a {})", load.name,
+                              face.local, face.element, name(element_kind(model))));
+  check_face_values(load);
+}
+
+void check_body_force(const Mesh& mesh, const BodyForce& force) {
+  for (const int e : force.elements)
+    if (e < 0 || e >= mesh.cell_count())
+      throw Error(fmt::format("body force '{}' names element {}, but the mesh has cells 0 to {}", force.name, e,
+                              mesh.cell_count() - 1));
+  if (!force.value.allFinite())
+    throw Error(fmt::format("body force '{}' is not finite: {}", force.name, place(force.value)));
+}
+
+void check_initial(const Model& model, const char* what, const Points& values) {
+  if (values.rows() == 0) return;
+  if (values.rows() != model.mesh->points.rows())
+    throw Error(fmt::format("the initial {} has {} rows for {} nodes", what, values.rows(), model.mesh->points.rows()));
+  if (!values.allFinite()) throw Error(fmt::format("the initial {} is not finite", what));
+}
+
 void check_step(const Model& model, const Step& step) {
   check_positive(("dt of step '" + step.name + "'").c_str(), step.dt, false);
   check_positive(("iterations of step '" + step.name + "'").c_str(), step.count, false);
   if (!step.gravity.allFinite())
     throw Error(fmt::format("gravity of step '{}' is not finite: {}", step.name, place(step.gravity)));
-  for (const Prescribed& p : step.prescribed) check_nodes(*model.mesh, "constraint", p.name, p.nodes, p.values);
-  for (const NodalForce& f : step.forces) check_nodes(*model.mesh, "force", f.name, f.nodes, f.values);
+  for (const Prescribed& p : step.prescribed)
+    check_nodes(*model.mesh, "constraint", p.name, p.nodes, p.values, static_cast<bool>(p.function));
+  for (const NodalForce& f : step.forces)
+    check_nodes(*model.mesh, "force", f.name, f.nodes, f.values, static_cast<bool>(f.function));
   for (const FaceLoad& load : step.face_loads) check_face_load(model, load);
+  for (const BodyForce& force : step.body_forces) check_body_force(*model.mesh, force);
+  if (!step.slides.empty())
+    throw Error(
+        fmt::format("'{}' slides in an oblique plane, which is not available yet: turn the scene so that the "
+                    "normal lies along an axis",
+                    step.slides.front().name));
 }
 
 }  // namespace
@@ -260,6 +290,8 @@ void Model::check() const {
   check_plane(*this);
   check_flat(*this);
   check_shapes(*this);
+  check_initial(*this, "displacement", initial_displacement);
+  check_initial(*this, "velocity", initial_velocity);
   if (steps.empty()) throw Error("the simulation has no step");
   for (const Step& step : steps) {
     check_step(*this, step);

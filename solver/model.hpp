@@ -50,6 +50,9 @@ enum class Plane { strain, stress };
 using VectorFunction = std::function<Vec3(const Vec3& X, double t)>;
 using ScalarFunction = std::function<double(const Vec3& X, double t)>;
 
+/// A factor in time: a load curve.
+using TimeFunction = std::function<double(double t)>;
+
 enum class Ramp { linear, step };
 
 /// Total displacement of nodes from the reference configuration, per component. With Ramp::linear the value is reached
@@ -62,6 +65,14 @@ struct Prescribed {
   bool components[3] = {true, true, true};
   Ramp ramp = Ramp::linear;      ///< zero displacement (a fixed node) uses step
   VectorFunction function = {};  ///< if set, the displacement at X and t instead of `values`, without a ramp
+  TimeFunction factor = {};      ///< if set, factor(t) times `values` or `function`, without a ramp
+};
+
+/// Nodes that stay in planes: no displacement along a normal, whatever the direction; see conditions/frames.hpp.
+struct Slide {
+  std::string name;
+  std::vector<int> nodes;
+  Vec3 normal = Vec3::UnitX();  ///< not zero
 };
 
 /// Force on each node (not shared between them), dead.
@@ -70,6 +81,35 @@ struct NodalForce {
   std::vector<int> nodes;
   std::vector<Vec3> values;      ///< one for all, or one per node
   VectorFunction function = {};  ///< if set, the force at X and t instead of `values`
+  TimeFunction factor = {};      ///< if set, factor(t) times either
+};
+
+/// Force per reference volume, dead.
+struct BodyForce {
+  std::string name;
+  std::vector<int> elements;     ///< cell ids
+  Vec3 value = Vec3::Zero();     ///< everywhere the same
+  VectorFunction function = {};  ///< if set, instead of `value`
+  bool steady = false;           ///< `function` does not depend on t: it ramps in statics as a value does
+  TimeFunction factor = {};      ///< if set, factor(t) times either
+};
+
+/// A spring with a damper beside it, from a node to a node or to a point in space. Tension stiffness (l - rest) along
+/// the line between its ends, and damping times the rate of l; with a rest length of 0 the damper acts in all
+/// directions.
+struct Spring {
+  std::string name;
+  int first = -1, second = -1;  ///< nodes; second = -1: the other end is `point`
+  Vec3 point = Vec3::Zero();
+  double stiffness = 0;  ///< force/length, >= 0
+  double damping = 0;    ///< force time/length, >= 0
+  double rest = 0;       ///< length, >= 0
+};
+
+/// A mass at a node, beside that of the elements; a node may have no element.
+struct PointMass {
+  int node = -1;
+  double mass = 1;  ///< > 0
 };
 
 /// A side of an element: face of a tetrahedron, edge of a triangle, end of a line (see msml::side_nodes).
@@ -87,11 +127,14 @@ struct FaceLoad {
   bool follower = false;          ///< pressure acts on the deformed face (with its tangent)
   VectorFunction traction_function = {};  ///< if set, instead of `tractions`
   ScalarFunction pressure_function = {};  ///< if set, instead of `pressures`
+  bool steady = false;                    ///< the function does not depend on t: it ramps in statics as values do
+  TimeFunction factor = {};               ///< if set, factor(t) times any of them
 };
 
 /// One stage of a simulation: `count` time steps of `dt`. What acts is listed anew for each stage. In dynamics loads
 /// act in full from the start; in statics they change linearly from those of the stage before (at first: none) to
-/// these, in Settings::load_steps equal parts, each of them one reported state; time then runs over dt * count.
+/// these, in Settings::load_steps equal parts, each of them one reported state; time then runs over dt * count. Loads
+/// and supports with a function of t or a factor do not ramp: they are what they are at each time.
 struct Step {
   std::string name;
   double dt = 0.05;  ///< time, > 0
@@ -100,6 +143,9 @@ struct Step {
   std::vector<Prescribed> prescribed;
   std::vector<NodalForce> forces;
   std::vector<FaceLoad> face_loads;
+  std::vector<BodyForce> body_forces = {};
+  std::vector<Slide> slides = {};
+  std::vector<Spring> springs = {};
 };
 
 /// static_: equilibrium, loads ramped over each step. quasi_static: equilibrium at every time step, loads as they are
@@ -152,6 +198,8 @@ struct Model {
   Formulation formulation = Formulation::standard;
   Plane plane = Plane::strain;  ///< of triangles
   double thickness = 1;         ///< of triangles; cross-section of lines
+  std::vector<PointMass> point_masses = {};
+  Points initial_displacement = {}, initial_velocity = {};  ///< #points x 3; empty: zero
   std::vector<Step> steps;
   Settings settings;
   /// Throws Error on what cannot be solved: an inverted reference element, a static body free to move, …

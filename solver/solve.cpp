@@ -34,7 +34,11 @@ Outcome run_model(const Model& model, const Observer& observer) {
   Equations equations(model);
   Newton newton(model, equations);
   const Vector zero = Vector::Zero(equations.size());
-  Run run{model, equations, newton, observer, outcome, {zero, zero, zero, zero}};
+  const auto start = [&](const Points& values) {
+    return values.rows() > 0 ? to_vector(equations.numbering(), values) : zero;
+  };
+  Run run{model,    equations, newton,
+          observer, outcome,   {start(model.initial_displacement), start(model.initial_velocity), zero, zero}};
   outcome.seconds_setup = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   integrate(run);
   outcome.unknowns = count_unknowns(model, equations.numbering(), run.now.step);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <map>
 
+#include "msml/core/formula.hpp"
+
 namespace msml {
 namespace {
 
@@ -34,6 +36,11 @@ std::string fallback_text(const Slot& slot) {
     return fmt::format("{}", fmt::join(*list, " "));
   if (const auto* list = std::get_if<std::vector<Integer>>(&slot.fallback))
     return fmt::format("{}", fmt::join(*list, " "));
+  if (const auto* list = std::get_if<Formulas>(&slot.fallback)) {
+    std::string all;
+    for (const Formula& entry : *list) all += (all.empty() ? "" : " ") + summary(Value(entry));
+    return all;
+  }
   const std::string text = summary(slot.fallback);
   return text.empty() ? "''" : text;
 }
@@ -43,7 +50,8 @@ std::string slot_text(const Slot& slot) {
   if (slot.role == Role::target) facts = "file name, written";
   if (!slot.unit.empty()) facts += ", " + slot.unit;
   if (slot.range.bounded()) facts += ", " + slot.range.str();
-  if (!slot.choices.empty()) facts += fmt::format(", one of {}", fmt::join(slot.choices, " | "));
+  if (!slot.choices.empty())
+    facts += fmt::format(", {} of {}", slot.type == Type::words ? "each one" : "one", fmt::join(slot.choices, " | "));
   if (!slot.counts.empty()) facts += fmt::format(", {} values", fmt::join(slot.counts, " or "));
   if (slot.multiple_of > 1) facts += fmt::format(", a multiple of {} values", slot.multiple_of);
   const std::string fallback = fallback_text(slot);
@@ -86,6 +94,11 @@ std::string description_text(const Registry& registry, const Description& descri
   if (!out.empty()) text += "\nOutputs (the first is ${id}, each is ${id.name})\n" + out;
   const std::string inside = rules_text(registry, description);
   if (!inside.empty()) text += "\nInside\n" + inside;
+  for (const Slot& slot : description.slots())
+    if (slot.type == Type::formula || slot.type == Type::formulas) {
+      text += "\n" + wrapped("Note: an expression may use " + formula_language() + ".", 0);
+      break;
+    }
   for (const std::string& note : description.notes()) text += "\n" + wrapped("Note: " + note, 0);
   return text;
 }

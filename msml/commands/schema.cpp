@@ -57,7 +57,7 @@ std::string attribute(const Slot& slot, bool verbatim) {
   if (slot.required) head += " use=\"required\"";
   const std::string doc = documentation(slot.doc, "        ");
   const std::string tail = "      </xs:attribute>\n";
-  if (slot.role == Role::parameter && !slot.choices.empty() && !verbatim) {
+  if (slot.role == Role::parameter && !slot.choices.empty() && slot.type == Type::text && !verbatim) {
     std::string facets;
     for (const std::string& choice : slot.choices)
       facets += fmt::format("<xs:enumeration value=\"{}\"/>", escaped(choice));

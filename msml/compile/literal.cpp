@@ -10,25 +10,14 @@
 #include <cmath>
 #include <limits>
 
+#include "msml/core/formula.hpp"
+
 namespace msml {
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r\n");
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
-std::vector<std::string> list_parts(const std::string& text) {
-  std::string inner = trimmed(text);
-  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
-  std::vector<std::string> parts;
-  std::size_t i = 0;
-  while ((i = inner.find_first_not_of(" \t\r\n,", i)) != std::string::npos) {
-    const std::size_t end = std::min(inner.find_first_of(" \t\r\n,", i), inner.size());
-    parts.push_back(inner.substr(i, end - i));
-    i = end;
-  }
-  return parts;
 }
 
 std::string quoted_value(const std::string& text) { return shortened(text); }
@@ -104,6 +93,82 @@ Parsed parse_list(const Slot& slot, const std::string& text, Check check) {
   return {std::move(list), {}};
 }
 
+/// A number or an expression; one that depends on nothing folds to its number.
+Parsed parse_formula(const Slot& slot, const std::string& text, const std::string& label) {
+  double value = 0;
+  const std::errc code = read(text, value);
+  std::string what;
+  if (code == std::errc::invalid_argument) {
+    const FormulaFacts facts = examine(text);
+    if (!facts.problem.empty()) return {{}, fmt::format("{} = {}: {}", label, quoted_value(text), facts.problem)};
+    if (facts.of_position || facts.of_time) return {Formula(text), {}};
+    value = facts.value;
+    what = number_problem(slot, std::errc(), value);
+  } else {
+    what = number_problem(slot, code, value);
+  }
+  if (what.empty()) return {Formula(value), {}};
+  return {{}, fmt::format("{} = {} {}", label, quoted_value(text), what)};
+}
+
+/// Parts of a list outside parentheses: at commas if there are any, else at blanks.
+std::vector<std::string> formula_parts(const std::string& text) {
+  std::string inner = trimmed(text);
+  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
+  std::vector<std::string> by_comma{""}, by_blank{""};
+  int depth = 0;
+  for (const char c : inner) {
+    depth += (c == '(') - (c == ')');
+    if (c == ',' && depth <= 0)
+      by_comma.emplace_back();
+    else
+      by_comma.back() += c;
+    if (std::string(" \t\r\n").find(c) != std::string::npos && depth <= 0)
+      by_blank.emplace_back();
+    else
+      by_blank.back() += c;
+  }
+  if (by_comma.size() == 1) {
+    std::erase(by_blank, "");
+    return by_blank;
+  }
+  for (std::string& part : by_comma) part = trimmed(part);
+  return by_comma;
+}
+
+Parsed parse_formulas(const Slot& slot, const std::string& text) {
+  Formulas list;
+  std::vector<std::string> parts = list_parts(text);
+  const bool plain = std::all_of(parts.begin(), parts.end(), [](const std::string& part) {
+    double value = 0;
+    return read(part, value) != std::errc::invalid_argument;
+  });
+  if (!plain) parts = formula_parts(text);
+  for (const std::string& part : parts) {
+    Parsed entry = parse_formula(slot, part, fmt::format("{}: entry {} of the list", slot.name, list.size() + 1));
+    if (!entry.problem.empty()) {
+      if (!plain && parts.size() > 1 && text.find(',') == std::string::npos)
+        entry.problem += "; entries that hold blanks are separated by commas";
+      return entry;
+    }
+    list.push_back(std::get<Formula>(entry.value));
+  }
+  if (const std::string what = length_problem(slot, list.size()); !what.empty()) return {{}, what};
+  return {std::move(list), {}};
+}
+
+std::string words_problem(const Slot& slot, const Words& list) {
+  for (const std::string& word : list)
+    if (const Parsed one = parse_text(slot, word); !one.problem.empty()) return one.problem;
+  return length_problem(slot, list.size());
+}
+
+Parsed parse_words(const Slot& slot, const std::string& text) {
+  Words list = list_parts(text);
+  if (const std::string what = words_problem(slot, list); !what.empty()) return {{}, what};
+  return {std::move(list), {}};
+}
+
 Parsed parse_indices(const Slot& slot, const std::string& text, Indexed indexes) {
   Slot bounded = slot;
   bounded.range = closed(0, std::numeric_limits<int>::max());
@@ -117,26 +182,40 @@ Parsed parse_indices(const Slot& slot, const std::string& text, Indexed indexes)
   return {IndexSetPtr(set), {}};
 }
 
-}  // namespace
+bool allowed(const Range& range, double value) { return range.contains(value); }
+bool allowed(const Range& range, Integer value) { return range.contains(static_cast<double>(value)); }
+/// Expressions are checked where they are evaluated.
+bool allowed(const Range& range, const Formula& value) { return !value.constant() || range.contains(value.number); }
 
-std::string value_problem(const Slot& slot, const Value& value) {
+template <class T>
+std::string one_problem(const Slot& slot, const T& value) {
+  return allowed(slot.range, value) ? "" : fmt::format("{} is not {}", summary(Value(value)), slot.range.str());
+}
+
+/// Range, choices and lengths.
+std::string described_problem(const Slot& slot, const Value& value) {
   const auto of_list = [&](const auto& list) {
     for (std::size_t i = 0; i < list.size(); ++i)
-      if (!slot.range.contains(static_cast<double>(list[i])))
-        return fmt::format("{}: entry {} of the list = {} is not {}", slot.name, i + 1, list[i], slot.range.str());
+      if (const std::string what = one_problem(slot, list[i]); !what.empty())
+        return fmt::format("{}: entry {} of the list = {}", slot.name, i + 1, what);
     return length_problem(slot, list.size());
+  };
+  const auto of_one = [&](const auto& one) {
+    const std::string what = one_problem(slot, one);
+    return what.empty() ? what : fmt::format("{} = {}", slot.name, what);
   };
   if (const auto* list = std::get_if<std::vector<double>>(&value)) return of_list(*list);
   if (const auto* list = std::get_if<std::vector<Integer>>(&value)) return of_list(*list);
+  if (const auto* list = std::get_if<Formulas>(&value)) return of_list(*list);
   if (const auto* text = std::get_if<std::string>(&value)) return parse_text(slot, *text).problem;
-  const auto* whole = std::get_if<Integer>(&value);
-  const auto* number = std::get_if<double>(&value);
-  if (!whole && !number) return {};
-  if (slot.range.contains(number ? *number : static_cast<double>(*whole))) return {};
-  return fmt::format("{} = {} is not {}", slot.name, summary(value), slot.range.str());
+  if (const auto* words = std::get_if<Words>(&value)) return words_problem(slot, *words);
+  if (const auto* one = std::get_if<Integer>(&value)) return of_one(*one);
+  if (const auto* one = std::get_if<double>(&value)) return of_one(*one);
+  if (const auto* one = std::get_if<Formula>(&value)) return of_one(*one);
+  return {};
 }
 
-Parsed parse_literal(const Slot& slot, const std::string& raw, Indexed indexes) {
+Parsed parse_described(const Slot& slot, const std::string& raw, Indexed indexes) {
   const std::string text = trimmed(raw);
   switch (slot.type) {
     case Type::boolean:
@@ -147,6 +226,12 @@ Parsed parse_literal(const Slot& slot, const std::string& raw, Indexed indexes) 
       return parse_list<Integer>(slot, text, integer_problem);
     case Type::numbers:
       return parse_list<double>(slot, text, number_problem);
+    case Type::words:
+      return parse_words(slot, text);
+    case Type::formula:
+      return parse_formula(slot, text, slot.name);
+    case Type::formulas:
+      return parse_formulas(slot, text);
     case Type::index_set:
       return parse_indices(slot, text, indexes);
     case Type::integer: {
@@ -164,6 +249,24 @@ Parsed parse_literal(const Slot& slot, const std::string& raw, Indexed indexes) 
     default:
       return problem(slot, text, fmt::format("cannot be {} written in place", with_article(slot.type)));
   }
+}
+
+std::string checked(const Slot& slot, const Value& value) {
+  const std::string what = slot.check ? slot.check(value) : "";
+  return what.empty() ? what : slot.name + ": " + what;
+}
+
+}  // namespace
+
+std::string value_problem(const Slot& slot, const Value& value) {
+  const std::string what = described_problem(slot, value);
+  return what.empty() ? checked(slot, value) : what;
+}
+
+Parsed parse_literal(const Slot& slot, const std::string& raw, Indexed indexes) {
+  Parsed parsed = parse_described(slot, raw, indexes);
+  if (parsed.problem.empty()) parsed.problem = checked(slot, parsed.value);
+  return parsed;
 }
 
 }  // namespace msml

@@ -11,18 +11,17 @@ namespace msml {
 
 std::string trimmed(const std::string& text);
 
-/// Parts of a list: separated by blanks, commas or both; one pair of surrounding braces is dropped.
-std::vector<std::string> list_parts(const std::string& text);
-
 /// The value, or what is wrong with it ("youngModulus = -3 is not > 0"). For the types nothing is read from disk for:
-/// boolean, integer, number, text, integers, numbers, index_set. `indexes` is what a list of indices counts.
+/// boolean, integer, number, text, integers, numbers, words, formula, formulas, index_set. `indexes` is what a list of
+/// indices counts.
 struct Parsed {
   Value value;
   std::string problem;
 };
 Parsed parse_literal(const Slot& slot, const std::string& text, Indexed indexes);
 
-/// What is wrong with a value that came along an edge, by the slot's range, choices and lengths; "" if nothing is.
+/// What is wrong with a value that came along an edge, by the slot's range, choices, lengths and check; "" if nothing
+/// is.
 std::string value_problem(const Slot& slot, const Value& value);
 
 /// Shortened for a message: at most 60 characters.

@@ -35,6 +35,9 @@ enum class Role : std::uint8_t {
   output      ///< data that flows out, referred to as ${task.slot}
 };
 
+/// What is wrong with a value of a slot, such as "times do not ascend: 2 follows 3"; "" if nothing is.
+using ValueCheck = std::function<std::string(const Value&)>;
+
 /// One attribute of a tag, or one output of an operator.
 struct Slot {
   std::string name;
@@ -45,10 +48,11 @@ struct Slot {
   Range range;       ///< of each number
   Value fallback;    ///< monostate: no default
   bool required = false;
-  std::vector<std::string> choices;  ///< allowed texts; empty = any
+  std::vector<std::string> choices;  ///< allowed texts or words; empty = any
   std::vector<std::size_t> counts;   ///< allowed lengths of a list; empty = any
   std::size_t multiple_of = 0;       ///< length of the list is a multiple of this; 0 = any
   Indexed indexes = Indexed::nodes;  ///< what a literal list of an IndexSet slot means
+  ValueCheck check;                  ///< what else must hold; empty = nothing
   int written_output = -1;           ///< target only: position of the output slot that the file receives
 };
 
@@ -69,6 +73,7 @@ struct Options {
   std::vector<std::size_t> counts = {};
   std::size_t multiple_of = 0;
   Indexed indexes = Indexed::nodes;
+  ValueCheck check = {};
   std::string doc;
 };
 
@@ -138,7 +143,8 @@ class Description {
               .choices = std::move(options.choices),
               .counts = std::move(options.counts),
               .multiple_of = options.multiple_of,
-              .indexes = options.indexes};
+              .indexes = options.indexes,
+              .check = std::move(options.check)};
     slot.required = !options.optional && !options.fallback && role != Role::output && role != Role::target;
     if constexpr (is_shared<T>) { /* data has no default */
     } else if (options.fallback)

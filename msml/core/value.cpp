@@ -3,15 +3,33 @@
 #include "msml/core/value.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
 
 #include "msml/core/error.hpp"
 
 namespace msml {
 
 const char* name(Type type) {
-  constexpr std::array<const char*, 15> names{
-      "nothing", "boolean", "integer", "number",   "text",  "list of integers", "list of numbers", "file",
-      "Mesh",    "Surface", "Image",   "IndexSet", "Field", "Series",           "list of images"};
+  constexpr std::array<const char*, 18> names{"nothing",
+                                              "boolean",
+                                              "integer",
+                                              "number",
+                                              "text",
+                                              "list of integers",
+                                              "list of numbers",
+                                              "list of words",
+                                              "number or expression",
+                                              "list of numbers or expressions",
+                                              "file",
+                                              "Mesh",
+                                              "Surface",
+                                              "Image",
+                                              "IndexSet",
+                                              "Field",
+                                              "Series",
+                                              "list of images"};
   return names[static_cast<std::size_t>(type)];
 }
 
@@ -22,6 +40,22 @@ std::string with_article(Type type) {
 
 bool is_data(Type type) { return type >= Type::mesh; }
 
+std::vector<std::string> list_parts(const std::string& text) {
+  constexpr const char* blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == std::string::npos) return {};
+  std::string inner = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
+  std::vector<std::string> parts;
+  std::size_t i = 0;
+  while ((i = inner.find_first_not_of(" \t\r\n,", i)) != std::string::npos) {
+    const std::size_t end = std::min(inner.find_first_of(" \t\r\n,", i), inner.size());
+    parts.push_back(inner.substr(i, end - i));
+    i = end;
+  }
+  return parts;
+}
+
 bool converts(Type from, Type to) {
   if (from == to) return true;
   switch (to) {
@@ -31,6 +65,12 @@ bool converts(Type from, Type to) {
       return from == Type::integer;
     case Type::numbers:
       return from == Type::integer || from == Type::number || from == Type::integers;
+    case Type::formula:
+      return from == Type::integer || from == Type::number;
+    case Type::formulas:
+      return from == Type::formula || from == Type::numbers || converts(from, Type::numbers);
+    case Type::words:
+      return from == Type::text;
     case Type::text:
       return from == Type::integer || from == Type::number || from == Type::boolean;
     case Type::mesh:
@@ -48,9 +88,16 @@ bool converts(Type from, Type to) {
 namespace {
 
 std::vector<double> numbers(const Value& value) {
+  if (const auto* list = std::get_if<std::vector<double>>(&value)) return *list;
   if (const auto* list = std::get_if<std::vector<Integer>>(&value)) return {list->begin(), list->end()};
   if (const auto* whole = std::get_if<Integer>(&value)) return {static_cast<double>(*whole)};
   return {std::get<double>(value)};
+}
+
+Formulas formulas(const Value& value) {
+  if (const auto* one = std::get_if<Formula>(&value)) return {*one};
+  const std::vector<double> list = numbers(value);
+  return {list.begin(), list.end()};
 }
 
 std::string text(const Value& value) {
@@ -73,6 +120,12 @@ Value convert(const Value& value, Type to) {
       return std::vector<Integer>{std::get<Integer>(value)};
     case Type::numbers:
       return numbers(value);
+    case Type::formula:
+      return Formula(numbers(value).front());
+    case Type::formulas:
+      return formulas(value);
+    case Type::words:
+      return list_parts(std::get<std::string>(value));
     case Type::text:
       return text(value);
     case Type::images:
@@ -128,6 +181,11 @@ std::string summary(const Value& value) {
                                [](const std::string& words) { return words; },
                                [](const std::vector<Integer>& list) { return fmt::format("{} integers", list.size()); },
                                [](const std::vector<double>& list) { return fmt::format("{} numbers", list.size()); },
+                               [](const Words& list) { return fmt::format("{}", fmt::join(list, " ")); },
+                               [](const Formula& formula) {
+                                 return formula.constant() ? fmt::format("{:.6g}", formula.number) : formula.text;
+                               },
+                               [](const Formulas& list) { return fmt::format("{} numbers", list.size()); },
                                [](const File& file) { return file.path.filename().string(); },
                                [](const MeshPtr& mesh) { return mesh->summary(); },
                                [](const SurfacePtr& surface) { return surface->summary(); },
@@ -145,22 +203,22 @@ std::string summary(const Value& value) {
 }
 
 std::size_t bytes(const Value& value) {
-  return std::visit(overloaded{[](const std::string& words) { return words.size(); },
-                               [](const std::vector<Integer>& list) { return held(list); },
-                               [](const std::vector<double>& list) { return held(list); },
-                               [](const MeshPtr& mesh) { return held(*mesh); },
-                               [](const SurfacePtr& surface) { return held(*surface); },
-                               [](const ImagePtr& image) { return held(*image); },
-                               [](const IndexSetPtr& set) { return held(set->ids); },
-                               [](const FieldPtr& field) { return held(field->values); },
-                               [](const SeriesPtr& series) { return series->last ? held(*series->last) : 0; },
-                               [](const ImageList& images) {
-                                 std::size_t sum = 0;
-                                 for (const ImagePtr& image : images) sum += held(*image);
-                                 return sum;
-                               },
-                               [](const auto&) { return std::size_t{0}; }},
-                    value);
+  return std::visit(
+      overloaded{
+          [](const std::string& words) { return words.size(); },
+          [](const std::vector<Integer>& list) { return held(list); },
+          [](const std::vector<double>& list) { return held(list); }, [](const Formulas& list) { return held(list); },
+          [](const MeshPtr& mesh) { return held(*mesh); }, [](const SurfacePtr& surface) { return held(*surface); },
+          [](const ImagePtr& image) { return held(*image); }, [](const IndexSetPtr& set) { return held(set->ids); },
+          [](const FieldPtr& field) { return held(field->values); },
+          [](const SeriesPtr& series) { return series->last ? held(*series->last) : 0; },
+          [](const ImageList& images) {
+            std::size_t sum = 0;
+            for (const ImagePtr& image : images) sum += held(*image);
+            return sum;
+          },
+          [](const auto&) { return std::size_t{0}; }},
+      value);
 }
 
 }  // namespace msml

@@ -29,6 +29,20 @@ struct Series {
   std::shared_ptr<const Mesh> last;  ///< points deformed, field "displacement" = x - X
 };
 
+/// A number, or an expression in the reference position X, Y, Z and the time t that gives one. Expressions of a
+/// compiled scene are checked and fold to a number where they depend on nothing; see msml/core/formula.hpp.
+struct Formula {
+  std::string text;   ///< the expression; "" for a number
+  double number = 0;  ///< without a text
+  Formula() = default;
+  Formula(double value) : number(value) {}
+  explicit Formula(std::string expression) : text(std::move(expression)) {}
+  bool constant() const { return text.empty(); }
+  bool operator==(const Formula&) const = default;
+};
+using Formulas = std::vector<Formula>;
+using Words = std::vector<std::string>;
+
 using MeshPtr = std::shared_ptr<const Mesh>;
 using SurfacePtr = std::shared_ptr<const Surface>;
 using ImagePtr = std::shared_ptr<const Image>;
@@ -39,8 +53,8 @@ using ImageList = std::vector<ImagePtr>;
 
 /// monostate = no value. Large values are shared, never copied.
 using Value =
-    std::variant<std::monostate, bool, Integer, double, std::string, std::vector<Integer>, std::vector<double>, File,
-                 MeshPtr, SurfacePtr, ImagePtr, IndexSetPtr, FieldPtr, SeriesPtr, ImageList>;
+    std::variant<std::monostate, bool, Integer, double, std::string, std::vector<Integer>, std::vector<double>, Words,
+                 Formula, Formulas, File, MeshPtr, SurfacePtr, ImagePtr, IndexSetPtr, FieldPtr, SeriesPtr, ImageList>;
 
 /// One type per alternative of Value, in the same order.
 enum class Type : std::uint8_t {
@@ -51,6 +65,9 @@ enum class Type : std::uint8_t {
   text,
   integers,
   numbers,
+  words,
+  formula,
+  formulas,
   file,
   mesh,
   surface,
@@ -118,9 +135,13 @@ std::string with_article(Type type);
 /// True for the types that a file can hold: mesh, surface, image, images, index_set, field.
 bool is_data(Type type);
 
+/// Parts of a list: separated by blanks, commas or both; one pair of surrounding braces is dropped.
+std::vector<std::string> list_parts(const std::string& text);
+
 /// True if a value of `from` can be used as `to` without losing anything:
-/// integer -> number -> numbers, integers -> numbers, surface -> mesh, series -> mesh (its last state),
-/// image -> images, and anything readable from a file (file -> mesh | surface | image) by its extension.
+/// integer -> number -> numbers, integers -> numbers, numbers of all kinds -> formula or formulas, text -> words,
+/// surface -> mesh, series -> mesh (its last state), image -> images, and anything readable from a file (file -> mesh |
+/// surface | image) by its extension.
 bool converts(Type from, Type to);
 
 /// Carries out a conversion for which converts() holds, except reading a file. Throws Error where it does not hold.

@@ -28,13 +28,24 @@ void collect(const Record& root, const std::string& step, std::vector<Placed>& f
   }
 }
 
-void put(fe::Step& step, const Condition& condition) {
-  if (const auto* prescribed = std::get_if<fe::Prescribed>(&condition.what))
-    step.prescribed.push_back(*prescribed);
-  else if (const auto* force = std::get_if<fe::NodalForce>(&condition.what))
-    step.forces.push_back(*force);
-  else
-    step.face_loads.push_back(std::get<fe::FaceLoad>(condition.what));
+/// Puts each kind of condition into its list of a step.
+struct Put {
+  fe::Step& step;
+  void operator()(const fe::Prescribed& prescribed) const { step.prescribed.push_back(prescribed); }
+  void operator()(const fe::NodalForce& force) const { step.forces.push_back(force); }
+  void operator()(const fe::FaceLoad& load) const { step.face_loads.push_back(load); }
+  void operator()(const fe::BodyForce& force) const { step.body_forces.push_back(force); }
+  void operator()(const fe::Slide& slide) const { step.slides.push_back(slide); }
+  void operator()(const std::vector<fe::Spring>& springs) const {
+    step.springs.insert(step.springs.end(), springs.begin(), springs.end());
+  }
+  void operator()(const InitialState&) const {}
+};
+
+void start_with(fe::Model& model, const InitialState& state) {
+  Points& points = state.velocity ? model.initial_velocity : model.initial_displacement;
+  if (points.rows() == 0) points = Points::Zero(model.mesh->points.rows(), 3);
+  for (std::size_t i = 0; i < state.nodes.size(); ++i) points.row(state.nodes[i]) = state.values[i].transpose();
 }
 
 /// Points that the constraints and loads of a step name.
@@ -47,6 +58,7 @@ std::vector<bool> named_nodes(const fe::Step& step, const Body& body) {
   for (const fe::NodalForce& force : step.forces) name(force.nodes);
   for (const fe::FaceLoad& load : step.face_loads)
     for (const fe::Face& face : load.faces) name(face_nodes(*body.mesh, face));
+  for (const fe::Slide& slide : step.slides) name(slide.nodes);
   return named;
 }
 
@@ -92,12 +104,15 @@ void warn_unknown_step(const Placed& placed, const std::vector<fe::Step>& steps,
                             placed.step, did_you_mean(placed.step, names), fmt::join(names, ", ")));
 }
 
-const Vec3& value_of(const fe::Prescribed& prescribed, std::size_t i) {
-  return prescribed.values.size() == 1 ? prescribed.values.front() : prescribed.values[i];
+/// Where node i is at a time, or at the end of the step for what ramps.
+Vec3 value_of(const fe::Prescribed& prescribed, std::size_t i, const Mesh& mesh, double t) {
+  const double factor = prescribed.factor ? prescribed.factor(t) : 1;
+  if (prescribed.function) return factor * prescribed.function(mesh.points.row(prescribed.nodes[i]).transpose(), t);
+  return factor * prescribed.values.size() == 1 ? prescribed.values.front() : prescribed.values[i];
 }
 
 /// Warns of nodes that two conditions of a step move to different places.
-void warn_of_conflicts(const fe::Step& step, Reporter& reporter) {
+void warn_of_conflicts(const fe::Step& step, const Mesh& mesh, double t, Reporter& reporter) {
   struct Held {
     double value;
     std::size_t by;
@@ -109,7 +124,7 @@ void warn_of_conflicts(const fe::Step& step, Reporter& reporter) {
     for (std::size_t i = 0; i < prescribed.nodes.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         if (!prescribed.components[k]) continue;
-        const Held now{value_of(prescribed, i)[k], p};
+        const Held now{value_of(prescribed, i, mesh, t)[k], p};
         const auto [before, fresh] = held.try_emplace({prescribed.nodes[i], k}, now);
         if (!fresh && before->second.value != now.value) conflicts[{before->second.by, p}].insert(prescribed.nodes[i]);
         before->second = now;
@@ -125,23 +140,29 @@ void warn_of_conflicts(const fe::Step& step, Reporter& reporter) {
 
 }  // namespace
 
-void add_conditions(const Record& root, const Body& body, Reporter& reporter, std::vector<fe::Step>& steps) {
+void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe::Model& model) {
+  std::vector<fe::Step>& steps = model.steps;
   std::vector<Placed> placed;
   collect(root, "", placed);
   std::vector<std::vector<fe::Prescribed>> lasting(steps.size());
   for (const Placed& each : placed) {
     const Condition condition = make<ConditionBuilder>(*each.record)(body, reporter);
+    if (const auto* start = std::get_if<InitialState>(&condition.what)) {
+      start_with(model, *start);
+      continue;
+    }
     bool acts = each.step.empty();
     for (std::size_t s = 0; s < steps.size(); ++s) {
       if (!each.step.empty() && steps[s].name != each.step) continue;
-      put(steps[s], condition);
+      std::visit(Put{steps[s]}, condition.what);
       if (condition.lasting) lasting[s].push_back(std::get<fe::Prescribed>(condition.what));
       acts = true;
     }
     if (!acts) warn_unknown_step(each, steps, reporter);
   }
   carry_on(steps, lasting, body, reporter);
-  for (const fe::Step& step : steps) warn_of_conflicts(step, reporter);
+  double end = 0;
+  for (const fe::Step& step : steps) warn_of_conflicts(step, *body.mesh, end += step.dt * step.count, reporter);
 }
 
 }  // namespace msml::simulation

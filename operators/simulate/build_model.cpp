@@ -51,7 +51,7 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);
   note_gravity(all_of(args, "step"), reporter);
-  add_conditions(object, body, reporter, model.steps);
+  add_conditions(object, body, reporter, model);
   return simulation;
 }
 

@@ -28,8 +28,8 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads);
 /// without elements are warned of.
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
 
-/// Adds the conditions under `root` to the steps they act in: forStep of the tag, else of the constraint around it,
-/// else every step. A name that is no step is warned of.
-void add_conditions(const Record& root, const Body& body, Reporter& reporter, std::vector<fe::Step>& steps);
+/// Adds the conditions under `root` to the model: initial states, and the others to the steps they act in: forStep of
+/// the tag, else of the constraint around it, else every step. A name that is no step is warned of.
+void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe::Model& model);
 
 }  // namespace msml::simulation

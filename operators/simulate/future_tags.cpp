@@ -108,7 +108,6 @@ void add_msml_constraints(std::vector<Description>& tags) {
 void add_constraints(std::vector<Description>& tags) {
   const Attribute indices{"indices", Type::index_set, "where it acts"}, step{"forStep", Type::text, "step"};
   const char* held = "hold nodes with fixedConstraint or displacementConstraint";
-  const char* loaded = "load it with forceConstraint, surfaceTraction, surfacePressure or gravity";
   tags.push_back(future("spring", "constraint", "A spring between two nodes.", held,
                         {{"first", Type::integer, "node"},
                          {"second", Type::integer, "node"},
@@ -119,15 +118,6 @@ void add_constraints(std::vector<Description>& tags) {
   tags.push_back(
       future("springToPoint", "constraint", "Springs from nodes to a point in space.", held,
              {indices, {"point", Type::numbers, "point"}, {"stiffness", Type::number, "force/length"}, step}));
-  tags.push_back(future("symmetryPlane", "constraint", "Nodes that stay in a plane.",
-                        "for a plane across an axis: fixedConstraint with components=\"x\", \"y\" or \"z\"",
-                        {indices, {"normal", Type::numbers, "of the plane"}, step}));
-  tags.push_back(future("bodyForce", "constraint", "Force per volume.", loaded,
-                        {indices, {"force", Type::numbers, "force/volume"}, step}));
-  tags.push_back(future("initialVelocity", "constraint", "Velocity at the start.", "bodies start at rest",
-                        {indices, {"velocity", Type::numbers, "length/time"}, step}));
-  tags.push_back(future("initialDisplacement", "constraint", "Displacement at the start.", "bodies start undeformed",
-                        {indices, {"displacement", Type::numbers, "length"}, step}));
   for (const char* tag : {"source", "fixedValue", "flux"})
     tags.push_back(future(tag, "constraint", "Of a scalar problem.", "there are no scalar problems",
                           {indices, {"value", Type::number, "its value"}, step}));

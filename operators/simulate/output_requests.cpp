@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tags `displacement` and `result`: what is written of a simulation.
 #include <algorithm>
-#include <sstream>
 
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/settings.hpp"
@@ -9,11 +8,12 @@
 namespace msml::simulation {
 namespace {
 
-constexpr const char* usual_fields =
-    "displacement velocity stress vonMises stress_nodal vonMises_nodal strain energyDensity J reaction region";
+const Words usual_fields{"displacement", "velocity",      "stress", "vonMises", "stress_nodal", "vonMises_nodal",
+                         "strain",       "energyDensity", "J",      "reaction", "region"};
 
 struct Keys {
-  Key<std::string> id, fields;
+  Key<std::string> id;
+  Key<Words> fields;
   Key<Integer> every, timestep;
   Key<bool> asterisk;
 };
@@ -36,18 +36,11 @@ std::string file_stem(const Record& record, Key<std::string> key) {
   return id;
 }
 
-std::vector<std::string> read_fields(const Record& record, const std::string& text) {
-  std::string blanks = text;
-  std::replace(blanks.begin(), blanks.end(), ',', ' ');
-  std::istringstream words(blanks);
-  std::vector<std::string> fields{"displacement"};
-  for (std::string word; words >> word;) {
-    const auto& known = field_names();
-    if (std::find(known.begin(), known.end(), word) == known.end())
-      refuse(record, fmt::format("fields: '{}' is not known{}; there are {}", word, did_you_mean(word, known),
-                                 fmt::join(known, ", ")));
+/// Each once, displacement first.
+Words distinct(const Words& wanted) {
+  Words fields{"displacement"};
+  for (const std::string& word : wanted)
     if (std::find(fields.begin(), fields.end(), word) == fields.end()) fields.push_back(word);
-  }
   return fields;
 }
 
@@ -72,14 +65,14 @@ Factory<OutputRequest> displacement() {
 Factory<OutputRequest> result() {
   Factory<OutputRequest> tag("result", "output", "Fields on the deformed mesh at the times of the simulation.");
   Keys keys = add_common(tag);
-  keys.fields = tag.parameter<std::string>(
-      "fields", {.fallback = usual_fields, .doc = fmt::format("a list of {}", fmt::join(field_names(), ", "))});
+  keys.fields = tag.parameter<Words>(
+      "fields", {.fallback = usual_fields, .choices = field_names(), .doc = "what is written besides displacement"});
   tag.note(
       "Stresses are Cauchy's; tensors have 6 components xx yy zz xy yz xz. stress, vonMises, strain, energyDensity, "
       "J and region are given at elements; with _nodal: recovered at nodes.");
   tag.build([=](const Record& record) {
     OutputRequest request{
-        .id = file_stem(record, keys.id), .fields = read_fields(record, record[keys.fields]), .where = record.where};
+        .id = file_stem(record, keys.id), .fields = distinct(record[keys.fields]), .where = record.where};
     if (record.has(keys.every)) request.every = static_cast<int>(record[keys.every]);
     return request;
   });

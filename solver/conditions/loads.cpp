@@ -7,7 +7,8 @@
 #include <Eigen/Geometry>
 
 #include "msml/core/error.hpp"
-#include "solver/elements/shapes.hpp"
+#include "solver/conditions/body_force.hpp"
+#include "solver/conditions/side_points.hpp"
 
 namespace msml::fe {
 namespace {
@@ -26,59 +27,6 @@ Mat3 cross(const Vec3& a) {
   return m;
 }
 
-/// A quadrature point of a side: shape values, their derivatives, and two tangents r and s with outward normal r x s.
-/// The second tangent of an edge, and both of an end point, are those of a plate of the model's thickness (a bar of its
-/// cross-section), which do not change.
-template <int nodes>
-struct SidePoint {
-  std::array<double, nodes> N{};
-  std::array<std::array<double, 2>, nodes> dN{};
-  double weight = 1;
-  Vec3 r = Vec3::Zero(), s = Vec3::Zero();
-};
-
-/// Calls body(point) at each point of a face; `x(a)` is the position of the side's node a. The rules are exact for a
-/// quadratic side: degree 2 (N) + 2 (normal).
-template <int nodes, class Position, class Body>
-void for_face_points(const Position& x, const Body& body) {
-  static const Rule<2> rule = collapsed_triangle_rule(nodes == 3 ? 1 : 3);
-  for (const auto& q : rule) {
-    SidePoint<nodes> point{Triangle<nodes>::values(q.xi), Triangle<nodes>::gradients(q.xi), q.weight};
-    for (int a = 0; a < nodes; ++a) {
-      point.r += point.dN[a][0] * x(a);
-      point.s += point.dN[a][1] * x(a);
-    }
-    body(point);
-  }
-}
-
-/// The same for an edge of a triangle; counter-clockwise edges have r x e_z outside.
-template <int nodes, class Position, class Body>
-void for_edge_points(const Position& x, double thickness, const Body& body) {
-  static const Rule<1> rule = line_rule(nodes == 2 ? 1 : 2);
-  for (const auto& q : rule) {
-    SidePoint<nodes> point{.N = Simplex<1, nodes>::values(q.xi), .weight = q.weight};
-    const auto gradients = Simplex<1, nodes>::gradients(q.xi);
-    for (int a = 0; a < nodes; ++a) {
-      point.dN[a] = {gradients[a][0], 0};
-      point.r += point.dN[a][0] * x(a);
-    }
-    point.s = thickness * Vec3::UnitZ();
-    body(point);
-  }
-}
-
-/// Calls body(point), a generic function, at each quadrature point of a side.
-template <class Position, class Body>
-void for_side_points(const FollowerFace& face, const Position& x, const Body& body) {
-  if (face.kind == CellKind::tri3) return for_face_points<3>(x, body);
-  if (face.kind == CellKind::tri6) return for_face_points<6>(x, body);
-  if (face.kind == CellKind::line2) return for_edge_points<2>(x, face.thickness, body);
-  if (face.kind == CellKind::line3) return for_edge_points<3>(x, face.thickness, body);
-  SidePoint<1> point{.N = {1}, .r = (face.end == 0 ? -1.0 : 1.0) * Vec3::UnitY(), .s = face.thickness * Vec3::UnitZ()};
-  body(point);
-}
-
 FollowerFace side_of(const Model& model, const Face& face, const Numbering& numbering) {
   FollowerFace out{.kind = side_kind(numbering.kind), .end = face.local, .thickness = model.thickness};
   const int* cell = model.mesh->cell(face.element);
@@ -87,36 +35,113 @@ FollowerFace side_of(const Model& model, const Face& face, const Numbering& numb
   return out;
 }
 
-void add_dead_face(const Model& model, const FollowerFace& face, const Vec3* traction, const Numbering& numbering,
-                   Vector& force) {
+/// Force per area that acts on a face: on its reference area, or times its normal.
+using Pull = std::function<Vec3(const Vec3& X, const Vec3& normal)>;
+
+void add_dead_face(const Mesh& mesh, const Numbering& numbering, const FollowerFace& face, const Pull& pull,
+                   bool varying, Vector& force) {
   const auto x = [&](int a) -> Vec3 {
-    return model.mesh->points.row(numbering.node_of[static_cast<std::size_t>(face.nodes[a])]).transpose();
+    return mesh.points.row(numbering.node_of[static_cast<std::size_t>(face.nodes[a])]).transpose();
   };
-  for_side_points(face, x, [&](const auto& point) {
-    const Vec3 normal = point.r.cross(point.s);
-    const Vec3 pull = traction ? Vec3(*traction * normal.norm()) : Vec3(-face.pressure * normal);
+  for_side_points(face, x, varying, [&](const auto& point) {
+    const Vec3 density = pull(interpolate(point, x), point.r.cross(point.s));
     for (std::size_t a = 0; a < point.N.size(); ++a)
-      force.segment<3>(3 * face.nodes[a]) += point.weight * point.N[a] * pull;
+      force.segment<3>(3 * face.nodes[a]) += point.weight * point.N[a] * density;
   });
 }
 
-void add_face_load(const Model& model, const FaceLoad& load, const Numbering& numbering, LoadSet& loads) {
-  for (std::size_t i = 0; i < load.faces.size(); ++i) {
-    FollowerFace face = side_of(model, load.faces[i], numbering);
-    if (!load.pressures.empty()) face.pressure = pick(load.pressures, i);
-    if (load.follower && load.tractions.empty()) {
-      loads.followers.push_back(face);
-      continue;
-    }
-    add_dead_face(model, face, load.tractions.empty() ? nullptr : &pick(load.tractions, i), numbering, loads.dead);
+/// The dead load on face i at a time.
+Pull pull_of(const FaceLoad& load, std::size_t i, double t) {
+  if (load.traction_function)
+    return
+        [&load, t](const Vec3& X, const Vec3& normal) -> Vec3 { return load.traction_function(X, t) * normal.norm(); };
+  if (load.pressure_function)
+    return [&load, t](const Vec3& X, const Vec3& normal) -> Vec3 { return -load.pressure_function(X, t) * normal; };
+  if (load.tractions.empty())
+    return [p = pick(load.pressures, i)](const Vec3&, const Vec3& normal) -> Vec3 { return -p * normal; };
+  return [T = pick(load.tractions, i)](const Vec3&, const Vec3& normal) -> Vec3 { return T * normal.norm(); };
+}
+
+void add_dead_faces(const Mesh& mesh, const Numbering& numbering, const FaceLoad& load,
+                    const std::vector<FollowerFace>& faces, double t, Vector& force) {
+  const bool varying = load.traction_function || load.pressure_function;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    add_dead_face(mesh, numbering, faces[i], pull_of(load, i, t), varying, force);
   }
 }
 
+/// Puts a dead load where it belongs. `add(t, force)` adds it without the factor; `follows` says that it depends on t.
+void add_load(LoadSet& loads, const TimeFunction& factor, bool follows, std::function<void(double, Vector&)> add) {
+  if (!factor && !follows) return add(0, loads.dead);
+  if (!factor) return loads.timed.push_back(std::move(add));
+  if (follows) {
+    loads.timed.push_back([add = std::move(add), factor](double t, Vector& force) {
+      Vector part = Vector::Zero(force.size());
+      add(t, part);
+      force += factor(t) * part;
+    });
+    return;
+  }
+  Vector pattern = Vector::Zero(loads.dead.size());
+  add(0, pattern);
+  loads.timed.push_back(
+      [pattern = std::move(pattern), factor](double t, Vector& force) { force += factor(t) * pattern; });
+}
+
+void add_face_load(const Model& model, const FaceLoad& load, const Numbering& numbering, LoadSet& loads) {
+  const bool follower = load.follower && load.tractions.empty() && !load.traction_function;
+  const bool source = load.pressure_function || load.factor;
+  std::vector<FollowerFace> faces;
+  for (const Face& face : load.faces) faces.push_back(side_of(model, face, numbering));
+  FaceLoad facts = load;
+  facts.faces.clear();
+  if (!follower) {
+    const bool follows = (load.traction_function || load.pressure_function) && !load.steady;
+    const auto add = [mesh = model.mesh, numbers = &numbering, facts, faces](double t, Vector& force) {
+      add_dead_faces(*mesh, *numbers, facts, faces, t, force);
+    };
+    return add_load(loads, load.factor, follows, add);
+  }
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    if (!load.pressures.empty()) faces[i].pressure = pick(load.pressures, i);
+    if (source) faces[i].source = static_cast<int>(loads.sources.size());
+    loads.followers.push_back(faces[i]);
+  }
+  if (source) loads.sources.push_back(std::move(facts));
+}
+
+void add_nodal_force(const Model& model, const NodalForce& force, const Numbering& numbering, LoadSet& loads) {
+  std::vector<int> numbers;
+  for (const int node : force.nodes) {
+    numbers.push_back(numbering.number_of[static_cast<std::size_t>(node)]);
+    if (numbers.back() < 0)
+      throw Error(fmt::format("force '{}' acts on node {}, which belongs to no element", force.name, node));
+  }
+  const auto add = [mesh = model.mesh, force, numbers](double t, Vector& sum) {
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      sum.segment<3>(3 * numbers[i]) +=
+          force.function ? force.function(mesh->points.row(force.nodes[i]).transpose(), t) : pick(force.values, i);
+  };
+  add_load(loads, force.factor, static_cast<bool>(force.function), add);
+}
+
+/// The pressure of a follower face at a place, as the loads that act say.
+double pressure_at(const ActingLoads& loads, const FollowerFace& face, const Vec3& X) {
+  if (face.source < 0) return loads.share * face.pressure;
+  const FaceLoad& source = loads.set->sources[static_cast<std::size_t>(face.source)];
+  const bool follows = source.factor || !source.steady;
+  if (follows && loads.leaving) return 0;
+  const double p = source.pressure_function ? source.pressure_function(X, loads.time) : face.pressure;
+  return p * (source.factor ? source.factor(loads.time) : 1.0) * (follows ? 1.0 : loads.share);
+}
+
 /// -df_a/du_b = p int N_a ([x,r]x N_b,s - [x,s]x N_b,r).
-void add_follower(const FollowerFace& face, double pressure, const Vector& X, const Vector& u, Vector& force,
+void add_follower(const ActingLoads& loads, const FollowerFace& face, const Vector& X, const Vector& u, Vector& force,
                   BlockMatrix* matrix) {
+  const auto reference = [&](int a) -> Vec3 { return at(X, face.nodes[a]); };
   const auto x = [&](int a) -> Vec3 { return at(X, face.nodes[a]) + at(u, face.nodes[a]); };
-  for_side_points(face, x, [&](const auto& point) {
+  for_side_points(face, x, face.source >= 0, [&](const auto& point) {
+    const double pressure = pressure_at(loads, face, interpolate(point, reference));
     const Vec3 push = -pressure * point.weight * point.r.cross(point.s);
     for (std::size_t a = 0; a < point.N.size(); ++a) force.segment<3>(3 * face.nodes[a]) += point.N[a] * push;
     if (!matrix) return;
@@ -145,22 +170,27 @@ LoadSet make_loads(const Model& model, const Step& step, const Numbering& number
   for (int n = 0; n < numbering.nodes(); ++n)
     gravity.segment<3>(3 * n) = numbering.scalar ? Vec3::Zero() : step.gravity;
   multiply(mass, gravity, loads.dead);
-  for (const NodalForce& force : step.forces)
-    for (std::size_t i = 0; i < force.nodes.size(); ++i) {
-      const int node = numbering.number_of[static_cast<std::size_t>(force.nodes[i])];
-      if (node < 0)
-        throw Error(fmt::format("force '{}' acts on node {}, which belongs to no element", force.name, force.nodes[i]));
-      loads.dead.segment<3>(3 * node) += pick(force.values, i);
-    }
+  for (const NodalForce& force : step.forces) add_nodal_force(model, force, numbering, loads);
   for (const FaceLoad& load : step.face_loads) add_face_load(model, load, numbering, loads);
+  for (const BodyForce& force : step.body_forces) {
+    const auto add = [mesh = model.mesh, thickness = model.thickness, numbers = &numbering, force](
+                         double t, Vector& sum) { add_body_force(*mesh, thickness, force, *numbers, t, sum); };
+    add_load(loads, force.factor, force.function && !force.steady, add);
+  }
   drop_absent(numbering, loads.dead);
+  if (numbering.components < 3 && !loads.timed.empty())
+    loads.timed.emplace_back([numbers = &numbering](double, Vector& force) { drop_absent(*numbers, force); });
   return loads;
 }
 
-void add_followers(const LoadSet& loads, double scale, const Vector& X, const Vector& u, Vector& force,
-                   BlockMatrix* matrix) {
-  if (scale == 0) return;
-  for (const FollowerFace& face : loads.followers) add_follower(face, scale * face.pressure, X, u, force, matrix);
+void add_dead(const ActingLoads& loads, Vector& force) {
+  force += loads.share * loads.set->dead;
+  if (loads.leaving) return;
+  for (const auto& add : loads.set->timed) add(loads.time, force);
+}
+
+void add_followers(const ActingLoads& loads, const Vector& X, const Vector& u, Vector& force, BlockMatrix* matrix) {
+  for (const FollowerFace& face : loads.set->followers) add_follower(loads, face, X, u, force, matrix);
 }
 
 }  // namespace msml::fe

@@ -4,29 +4,47 @@
 
 namespace msml::fe {
 
-Vector Supports::at(double share, double /*time*/) const {
+Vec3 MovedNode::at(double time) const {
+  const Vec3 now = function ? function(X, time) : value;
+  return factor ? Vec3(factor(time) * now) : now;
+}
+
+Vector Supports::at(double share, double time) const {
   Vector value = Vector::Zero(start.size());
   for (std::size_t k = 0; k < fixed.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
     if (fixed[k]) value[i] = ramped[k] ? start[i] + share * (end[i] - start[i]) : end[i];
+  }
+  for (std::size_t m = 0; m < moved.size(); ++m) {
+    const Vec3 now = moved[m].at(time);
+    for (int c = 0; c < 3; ++c)
+      if (moved_by[static_cast<std::size_t>(3 * moved[m].node + c)] == static_cast<int>(m))
+        value[3 * moved[m].node + c] = now[c];
   }
   return value;
 }
 
 Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u) {
   const std::size_t size = static_cast<std::size_t>(3 * numbering.nodes());
-  Supports supports{Mask(size, 0), u, u, Mask(size, 0)};
+  Supports supports{Mask(size, 0), u, u, Mask(size, 0), {}, std::vector<int>(size, -1)};
   for (const Prescribed& condition : step.prescribed)
     for (std::size_t i = 0; i < condition.nodes.size(); ++i) {
       const int node = numbering.number_of[static_cast<std::size_t>(condition.nodes[i])];
       if (node < 0) continue;
-      const Vec3& value = condition.values.size() == 1 ? condition.values.front() : condition.values[i];
+      const bool follows = condition.function || condition.factor;
+      const Vec3 value = condition.function             ? Vec3::Zero()
+                         : condition.values.size() == 1 ? condition.values.front()
+                                                        : condition.values[i];
+      if (follows)
+        supports.moved.push_back({node, numbering.mesh->points.row(condition.nodes[i]).transpose(), value,
+                                  condition.function, condition.factor});
       for (int c = 0; c < 3; ++c) {
         if (!condition.components[c]) continue;
         const std::size_t k = static_cast<std::size_t>(3 * node + c);
         supports.fixed[k] = 1;
         supports.end[3 * node + c] = value[c];
-        supports.ramped[k] = condition.ramp == Ramp::linear;
+        supports.ramped[k] = condition.ramp == Ramp::linear && !follows;
+        supports.moved_by[k] = follows ? static_cast<int>(supports.moved.size()) - 1 : -1;
       }
     }
   for (int node = 0; node < numbering.nodes(); ++node)
@@ -35,6 +53,7 @@ Supports make_supports(const Step& step, const Numbering& numbering, const Vecto
       supports.fixed[k] = 1;
       supports.start[3 * node + c] = supports.end[3 * node + c] = 0;
       supports.ramped[k] = 0;
+      supports.moved_by[k] = -1;
     }
   return supports;
 }

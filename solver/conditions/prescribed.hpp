@@ -6,11 +6,22 @@
 
 namespace msml::fe {
 
+/// A node with a displacement that follows time: factor(t) times the function or the value.
+struct MovedNode {
+  int node = 0;  ///< numbered
+  Vec3 X, value;
+  VectorFunction function;
+  TimeFunction factor;
+  Vec3 at(double time) const;
+};
+
 /// The fixed unknowns of a step: values at its start and end. 3 per numbered node.
 struct Supports {
   Mask fixed;
   Vector start, end;
-  Mask ramped;  ///< reached linearly over the step; the others at once
+  Mask ramped;                     ///< reached linearly over the step; the others at once
+  std::vector<MovedNode> moved;    ///< nodes whose displacement is given as a function of time
+  std::vector<int> moved_by = {};  ///< per unknown: which of `moved` gives it, -1 = none
   /// Values at a share of the step in (0, 1] and the time there; entries of free unknowns are 0.
   Vector at(double share, double time) const;
 };

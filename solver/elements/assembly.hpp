@@ -13,6 +13,7 @@ namespace msml::fe {
 /// The elements that carry unknowns, and the numbering of the nodes they use. Nodes are renumbered along a
 /// space-filling curve, so that neighbours lie close in memory.
 struct Numbering {
+  std::shared_ptr<const Mesh> mesh;
   CellKind kind = CellKind::tet4;
   int components = 3;              ///< unknowns per node that the problem has, see components(); the others stay zero
   bool scalar = false;             ///< the one unknown is no displacement (Law::components() == 1)

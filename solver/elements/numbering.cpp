@@ -63,6 +63,7 @@ Numbering number(const Model& model) {
   const Mesh& mesh = *model.mesh;
   const Curve curve(mesh.points);
   Numbering numbering;
+  numbering.mesh = model.mesh;
   order_elements(model, curve, numbering);
   numbering.kind = mesh.kinds[static_cast<std::size_t>(numbering.elements.front())];
   numbering.components = components(model);

@@ -20,7 +20,7 @@ void run_static(Run& run) {
         {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
     path.loads = [&](double share) {
       ScaledLoads loads{{goal, share, path.time(share)}};
-      if (before && share < 1) loads.push_back({before, 1 - share, path.start});
+      if (before && share < 1) loads.push_back({before, 1 - share, path.start, true});
       return loads;
     };
     for (int part = 1; part <= parts; ++part)

@@ -28,6 +28,12 @@ inline Surface one_triangle() {
   return surface;
 }
 
+inline std::string no_fives(const Value& value) {
+  for (const double x : std::get<std::vector<double>>(value))
+    if (x == 5) return "5 does not belong there";
+  return {};
+}
+
 /// A surface from nothing: settings of every kind of number and text.
 inline Operator make_surface() {
   Operator op("MakeSurface", "Make a triangle.");
@@ -40,6 +46,10 @@ inline Operator make_surface() {
   op.parameter<std::string>("label", {.optional = true, .doc = "any words"});
   op.parameter<std::vector<double>>("centers", {.optional = true, .multiple_of = 3, .doc = "points"});
   op.parameter<std::vector<Integer>>("ids", {.optional = true, .doc = "whole numbers"});
+  op.parameter<Formula>("height", {.range = positive(), .optional = true, .doc = "above the plane"});
+  op.parameter<Formulas>("normal", {.optional = true, .counts = {3}, .doc = "which way it looks"});
+  op.parameter<Words>("sides", {.optional = true, .choices = {"left", "right"}, .doc = "which are closed"});
+  op.parameter<std::vector<double>>("table", {.optional = true, .check = no_fives, .doc = "no fives"});
   const auto surface = op.output<Surface>("surface", "the triangle");
   op.target("file", surface, "where it is written");
   op.run([=](Context& c) { c.set(surface, one_triangle()); });

@@ -43,6 +43,56 @@ TEST(Values, EndsOfAClosedRangeAreAllowed) {
   EXPECT_EQ(of("radius=\"+1.5e-3\""), "");
 }
 
+/// The start of every fault of an expression, without the long list of what is allowed.
+std::string start_of(const std::string& attributes) {
+  const std::string fault = of(attributes);
+  return fault.substr(0, fault.find("; an expression may use X, Y, Z"));
+}
+
+TEST(Values, FormulaMayBeANumberOrAnExpression) {
+  for (const char* text : {"2", " +1e-3 ", "1 + X^2", "2*pi", "min(1, t) + exp(-Z)", "X > 0 ? 1 : 2"})
+    EXPECT_EQ(of("height=\"" + std::string(text) + "\""), "") << text;
+}
+
+TEST(Values, FaultOfAnExpressionNamesItsPlace) {
+  EXPECT_EQ(start_of("height=\"1 + x\""), "s.xml:2: height = 1 + x: 'x' at position 5 is unknown");
+  EXPECT_EQ(start_of("height=\"2*(X + Y\""), "s.xml:2: height = 2*(X + Y: a closing parenthesis is missing");
+  EXPECT_EQ(start_of("height=\"2*\""), "s.xml:2: height = 2*: it ends too early");
+  EXPECT_EQ(start_of("height=\"3mm\""), "s.xml:2: height = 3mm: 'mm' at position 2 is unknown");
+  EXPECT_EQ(start_of("height=\"\""), "s.xml:2: height = : it is empty");
+  EXPECT_EQ(start_of("height=\"1,5\""), "s.xml:2: height = 1,5: it gives 2 values instead of one");
+  EXPECT_EQ(start_of("height=\"X = 3\""),
+            "s.xml:2: height = X = 3: '=' at position 3 does not fit there (to compare, ==)");
+  EXPECT_EQ(start_of("height=\"sin(1, 2)\""),
+            "s.xml:2: height = sin(1, 2): a function before ')' at position 9 has too many arguments");
+}
+
+TEST(Values, ExpressionOfNothingIsItsNumber) {
+  EXPECT_EQ(of("height=\"-2*pi\""), "s.xml:2: height = -2*pi is not > 0");
+  EXPECT_EQ(of("height=\"1/0\""), "s.xml:2: height = 1/0 is not a finite number");
+  EXPECT_EQ(of("height=\"-3\""), "s.xml:2: height = -3 is not > 0");
+  EXPECT_EQ(of("height=\"inf\""), "s.xml:2: height = inf is not a finite number");
+}
+
+TEST(Values, ListOfExpressionsIsSplitAtCommasOrBlanks) {
+  for (const char* list : {"0 0 1", "0,0,1", "sin(t) 0 0", "1 - X, 0, 0", "{X, atan2(Y, X), 0}", "max(X, 1) 0 0"})
+    EXPECT_EQ(of("normal=\"" + std::string(list) + "\""), "") << list;
+  EXPECT_EQ(of("normal=\"X Y\""), "s.xml:2: normal has 2 values, but needs 3");
+  EXPECT_EQ(start_of("normal=\"0 0 x\""), "s.xml:2: normal: entry 3 of the list = x: 'x' at position 1 is unknown");
+  const std::string hint = of("normal=\"1 - X 0 0\"");
+  EXPECT_TRUE(hint.ends_with("; entries that hold blanks are separated by commas")) << hint;
+}
+
+TEST(Values, WordsAreCheckedOneByOne) {
+  EXPECT_EQ(of("sides=\"left, right\""), "");
+  EXPECT_EQ(of("sides=\"left rigth\""), "s.xml:2: sides = rigth is not one of left, right (did you mean 'right'?)");
+}
+
+TEST(Values, OwnCheckOfASlotIsMade) {
+  EXPECT_EQ(of("table=\"1 2\""), "");
+  EXPECT_EQ(of("table=\"1 5\""), "s.xml:2: table: 5 does not belong there");
+}
+
 TEST(Values, IntegerMustBeAnInteger) {
   EXPECT_EQ(of("count=\"3.5\""), "s.xml:2: count = 3.5 is not an integer");
   EXPECT_EQ(of("count=\"many\""), "s.xml:2: count = many is not an integer");

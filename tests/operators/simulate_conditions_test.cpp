@@ -86,15 +86,6 @@ TEST(FixedConstraint, HoldsTheComponentsItNames) {
   EXPECT_THAT(built.step().prescribed.at(0).components, ElementsAre(true, false, true));
 }
 
-TEST(FixedConstraint, RefusesOtherComponents) {
-  const Language language;
-  const auto text = [&](const std::string& components) {
-    return build(language, "fixedConstraint", {{"indices", nodes({3})}, {"components", components}}).error;
-  };
-  EXPECT_EQ(text("x w"), "scene.xml:7: fixedConstraint: components = 'x w' is not a list of x, y and z");
-  EXPECT_EQ(text(" "), "scene.xml:7: fixedConstraint: components names no axis; allowed are x, y and z");
-}
-
 TEST(Indices, AnEmptySetIsRefusedWithTheBounds) {
   const Language language;
   for (const char* tag : {"fixedConstraint", "surfacePressure"}) {
@@ -317,7 +308,7 @@ TEST(SurfacePressureOnMesh, MatchesTheTrianglesOfASeparateSurface) {
               testing::UnorderedElementsAre(4, 6, 7));
   load["pulse"] = std::string("sin");
   EXPECT_EQ(build(language, topped(language, mesh, load, "surfacePressureOnMesh")).error,
-            "scene.xml:7: surfacePressureOnMesh: pulse is not available yet: a pressure is constant in its step");
+            "scene.xml:7: surfacePressureOnMesh: pulse is not available yet; a table or an expression in t gives the pressure over time");
 }
 
 Scene two_steps(const Language& language) {

@@ -54,7 +54,8 @@ Record Language::tag(const std::string& name, const std::string& category, const
   for (const Slot& slot : description->slots()) record.values.push_back(slot.fallback);
   record.given.assign(record.values.size(), false);
   for (const auto& [attribute, value] : attributes) {
-    record.values[at(*description, attribute)] = value;
+    const Type wanted = description->slots()[at(*description, attribute)].type;
+    record.values[at(*description, attribute)] = converts(type(value), wanted) ? convert(value, wanted) : value;
     record.given[at(*description, attribute)] = true;
     if (attribute == "id" || attribute == "name") record.id = std::get<std::string>(value);
   }

@@ -155,17 +155,6 @@ TEST(Result, FieldsAreAListThatAlwaysHoldsTheDisplacement) {
               ElementsAre("displacement", "vonMises", "J"));
 }
 
-TEST(Result, UnknownFieldsAreRefusedWithTheNearest) {
-  const Language language;
-  Scene scene = cube(language);
-  scene.outputs = {language.tag("result", "output", {{"id", std::string("a")}, {"fields", std::string("vonmises")}})};
-  EXPECT_EQ(
-      message(scene, language),
-      "scene.xml:7: result: fields: 'vonmises' is not known (did you mean 'vonMises'?); there are displacement, "
-      "velocity, acceleration, stress, vonMises, stress_nodal, vonMises_nodal, strain, strain_nodal, energyDensity, J, "
-      "reaction, region");
-}
-
 TEST(Result, AnIdThatIsNoFileNameIsRefused) {
   const Language language;
   Scene scene = cube(language);

@@ -74,7 +74,7 @@ TEST(FollowerPressure, OnAClosedSurfaceHasNoResultantAndWorksOnTheVolume) {
     const Equations equations(model);
     Vector u(equations.size()), v(equations.size()), force = Vector::Zero(equations.size());
     for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = 0.1 * random.number(), v[k] = random.number();
-    add_followers(equations.loads(0), 1, equations.positions(), u, force, nullptr);
+    add_followers({&equations.loads(0), 1, 0}, equations.positions(), u, force, nullptr);
     EXPECT_LT(total(force).norm(), 1e-12);
     const auto volume = [&](const Vector& w) {
       // The divergence theorem over tetrahedra that share all nodes: exact for tet4 by its constant J.
@@ -102,13 +102,13 @@ TEST(FollowerPressure, TangentIsTheDerivative) {
     const Equations equations(model);
     const auto force_at = [&](const Vector& w) {
       Vector f = Vector::Zero(equations.size());
-      add_followers(equations.loads(0), 0.5, equations.positions(), w, f, nullptr);
+      add_followers({&equations.loads(0), 0.5, 0}, equations.positions(), w, f, nullptr);
       return f;
     };
     Vector u(equations.size()), v(equations.size()), force = Vector::Zero(equations.size()), product;
     for (Eigen::Index k = 0; k < u.size(); ++k) u[k] = 0.1 * random.number(), v[k] = random.number();
     BlockMatrix tangent(equations.elements().pattern());
-    add_followers(equations.loads(0), 0.5, equations.positions(), u, force, &tangent);
+    add_followers({&equations.loads(0), 0.5, 0}, equations.positions(), u, force, &tangent);
     multiply(tangent, v, product);
     const double h = 1e-5;  // forces are quadratic in u: central differences are exact but for round-off 1e-16 / h
     const Vector slope = (force_at(u + h * v) - force_at(u - h * v)) / (2 * h);

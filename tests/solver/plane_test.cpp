@@ -134,7 +134,7 @@ TEST(Triangles, FollowerPressureOnEdgesHasItsTangent) {
       if (k % 3 < 2) u[k] = 0.1 * std::sin(3.0 * static_cast<double>(k));
     BlockMatrix K(equations.elements().pattern());
     Vector force = Vector::Zero(u.size()), unused = force;
-    add_followers(equations.loads(0), 1, equations.positions(), u, force, &K);
+    add_followers({&equations.loads(0), 1, 0}, equations.positions(), u, force, &K);
     // The edge's end points at u give the sum of forces: p t (y1 - y0, -(x1 - x0)), against the outward normal.
     const auto moved = [&](double y) -> Vec3 {
       const int n = equations.numbering().number_of[static_cast<std::size_t>(nearest_point(*model.mesh, {1, y, 0}))];
@@ -148,8 +148,8 @@ TEST(Triangles, FollowerPressureOnEdgesHasItsTangent) {
     for (Eigen::Index k = 0; k < u.size(); k += 7) {
       Vector up = u, down = u, plus = Vector::Zero(u.size()), minus = plus, column;
       up[k] += h, down[k] -= h;
-      add_followers(equations.loads(0), 1, equations.positions(), up, plus, nullptr);
-      add_followers(equations.loads(0), 1, equations.positions(), down, minus, nullptr);
+      add_followers({&equations.loads(0), 1, 0}, equations.positions(), up, plus, nullptr);
+      add_followers({&equations.loads(0), 1, 0}, equations.positions(), down, minus, nullptr);
       multiply(K, Vector::Unit(u.size(), k), column);
       if (k % 3 == 2) continue;  // held at zero
       EXPECT_LT((column + (plus - minus) / (2 * h)).cwiseAbs().maxCoeff(), 1e-8);

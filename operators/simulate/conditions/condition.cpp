@@ -8,9 +8,19 @@
 
 namespace msml::simulation {
 
+namespace {
+
+std::string no_axis(const Value& value) {
+  return std::get<Words>(value).empty() ? "it names no axis; allowed are x, y and z" : "";
+}
+
+}  // namespace
+
 std::vector<ConditionFactory> conditions() {
   return {fixed_constraint(), displacement_constraint(),  force_constraint(),
-          surface_pressure(), surface_pressure_on_mesh(), surface_traction()};
+          surface_pressure(), surface_pressure_on_mesh(), surface_traction(),
+          body_force(),       symmetry_plane(),           roller(),
+          initial_velocity(), initial_displacement()};
 }
 
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes) {
@@ -21,64 +31,146 @@ CommonKeys add_common(Description& description, const std::string& doc, Indexed 
   return keys;
 }
 
-Key<std::string> add_components(Description& description) {
-  return description.parameter<std::string>(
-      "components", {.optional = true, .doc = "the axes that are held, such as \"x z\"; absent: all three"});
+Key<Words> add_components(Description& description) {
+  return description.parameter<Words>("components",
+                                      {.optional = true,
+                                       .choices = {"x", "y", "z"},
+                                       .check = no_axis,
+                                       .doc = "the axes that are held, such as \"x z\"; absent: all three"});
 }
 
-void read_components(const Record& record, Key<std::string> components, fe::Prescribed& prescribed) {
+void read_components(const Record& record, Key<Words> components, fe::Prescribed& prescribed) {
   if (!record.has(components)) return;
   std::fill(std::begin(prescribed.components), std::end(prescribed.components), false);
-  bool any = false;
-  for (const char c : record[components]) {
-    if (c == ' ' || c == ',' || c == '\t' || c == '\n') continue;
-    if (c < 'x' || c > 'z')
-      refuse(record, fmt::format("components = '{}' is not a list of x, y and z", record[components]));
-    prescribed.components[c - 'x'] = any = true;
-  }
-  if (!any) refuse(record, "components names no axis; allowed are x, y and z");
+  for (const std::string& axis : record[components]) prescribed.components[axis.front() - 'x'] = true;
+}
+
+namespace {
+
+std::string table_problem(const Value& value) {
+  const auto& list = std::get<std::vector<double>>(value);
+  for (std::size_t i = 2; i + 1 < list.size(); i += 2)
+    if (!(list[i] > list[i - 2]))
+      return fmt::format("times must ascend, but {:g} follows {:g}; it lists time, factor, time, factor, …", list[i],
+                         list[i - 2]);
+  return {};
+}
+
+bool constant(const Formulas& formulas) {
+  return std::all_of(formulas.begin(), formulas.end(), [](const Formula& each) { return each.constant(); });
+}
+
+bool steady(const std::vector<Function>& parts) {
+  return std::none_of(parts.begin(), parts.end(), [](const Function& part) { return part.of_time(); });
+}
+
+std::vector<double> numbers(const Formulas& formulas) {
+  std::vector<double> list;
+  for (const Formula& each : formulas) list.push_back(each.number);
+  return list;
+}
+
+const std::string& name_of(const Record& record, Key<Formulas> key) {
+  return record.description->slots()[static_cast<std::size_t>(key.slot)].name;
+}
+
+}  // namespace
+
+Key<std::vector<double>> add_table(Description& description) {
+  return description.parameter<std::vector<double>>(
+      "table",
+      {.optional = true,
+       .multiple_of = 2,
+       .check = table_problem,
+       .doc = "a factor in time on the numbers of this tag: \"t0 v0 t1 v1 …\", linear between the times, constant "
+              "before the first and after the last; nothing ramps then"});
+}
+
+fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table) {
+  if (!record.has(table)) return {};
+  return [list = record[table]](double t) {
+    if (t <= list.front()) return list[1];
+    for (std::size_t i = 2; i + 1 < list.size(); i += 2)
+      if (t < list[i]) {
+        const double share = (t - list[i - 2]) / (list[i] - list[i - 2]);
+        return list[i - 1] + share * (list[i + 1] - list[i - 1]);
+      }
+    return list.back();
+  };
 }
 
 std::string label(const Record& record) { return record.id.empty() ? record.tag() : record.id; }
 
-std::vector<Vec3> per_node(const Record& record, const std::vector<double>& numbers, const NodeSelection& selection,
-                           const std::string& attribute) {
-  if (numbers.size() == 3) return {Vec3(numbers[0], numbers[1], numbers[2])};
-  const bool listed = !selection.positions.empty();
-  if (!listed)
+fe::VectorFunction vector_of(const std::vector<Function>& parts) {
+  return [parts](const Vec3& X, double t) { return Vec3(parts[0](X, t), parts[1](X, t), parts[2](X, t)); };
+}
+
+NodeValues per_node(const Record& record, Key<Formulas> key, const NodeSelection& selection, const Mesh& mesh) {
+  const Formulas& formulas = record[key];
+  const std::string& attribute = name_of(record, key);
+  if (formulas.size() != 3 && selection.positions.empty())
     refuse(record, fmt::format("{} has {} numbers; with indices of faces or elements 3 are allowed, the same for all "
                                "nodes",
-                               attribute, numbers.size()));
-  if (numbers.size() != 3 * static_cast<std::size_t>(selection.listed))
+                               attribute, formulas.size()));
+  if (formulas.size() != 3 && formulas.size() != 3 * static_cast<std::size_t>(selection.listed))
     refuse(record, fmt::format("{} has {} numbers; allowed are 3, or 3 for each of the {} in indices ({})", attribute,
-                               numbers.size(), counted(selection.listed, "node"), 3 * selection.listed));
-  std::vector<Vec3> values;
+                               formulas.size(), counted(selection.listed, "node"), 3 * selection.listed));
+  if (constant(formulas) && formulas.size() == 3)
+    return {{Vec3(formulas[0].number, formulas[1].number, formulas[2].number)}, {}};
+  if (formulas.size() == 3) {
+    const std::vector<Function> parts = functions(record, key);
+    const fe::VectorFunction function = vector_of(parts);
+    if (!steady(parts)) return {{}, function};
+    NodeValues values;
+    for (const int node : selection.nodes) values.values.push_back(function(mesh.points.row(node).transpose(), 0));
+    return values;
+  }
+  if (!constant(formulas))
+    refuse(record,
+           fmt::format("{} has expressions in a list of one vector per node; write 3 expressions for all nodes, "
+                       "where X, Y and Z tell them apart",
+                       attribute));
+  NodeValues values;
   for (const int position : selection.positions) {
-    const double* at = numbers.data() + 3 * static_cast<std::size_t>(position);
-    values.emplace_back(at[0], at[1], at[2]);
+    const Formula* at = formulas.data() + 3 * static_cast<std::size_t>(position);
+    values.values.emplace_back(at[0].number, at[1].number, at[2].number);
   }
   return values;
 }
 
-fe::FaceLoad face_load(const Record& record, const std::vector<double>& numbers, const FaceSelection& selection,
-                       const std::string& attribute, bool follower) {
-  fe::FaceLoad load{.name = label(record), .faces = selection.faces};
-  if (numbers.size() == 3) {
-    load.tractions = {Vec3(numbers[0], numbers[1], numbers[2])};
-    return load;
-  }
-  const bool one_each = selection.listed && numbers.size() == selection.faces.size();
-  if (numbers.size() != 1 && !one_each)
-    refuse(record, fmt::format("{} has {} numbers; allowed are 1, 3 (a traction vector){}", attribute, numbers.size(),
+fe::FaceLoad face_load(const Record& record, Key<Formulas> key, const FaceSelection& selection, bool follower) {
+  const Formulas& formulas = record[key];
+  const bool one_each = selection.listed && formulas.size() == selection.faces.size();
+  if (formulas.size() != 3 && formulas.size() != 1 && !one_each)
+    refuse(record, fmt::format("{} has {} numbers; allowed are 1, 3 (a traction vector){}", name_of(record, key),
+                               formulas.size(),
                                selection.listed ? fmt::format(", or one for each of the {} in indices",
                                                               counted(static_cast<int>(selection.faces.size()), "face"))
                                                 : std::string(" where indices counts nodes")));
-  load.pressures = numbers;
+  const bool expressions = !constant(formulas);
+  if (expressions && formulas.size() != 3 && formulas.size() != 1)
+    refuse(record, fmt::format("{} has expressions in a list of one number per face; write one expression for all "
+                               "faces, where X, Y and Z tell them apart",
+                               name_of(record, key)));
+  fe::FaceLoad load{.name = label(record), .faces = selection.faces};
+  const std::vector<Function> parts = functions(record, key);
+  load.steady = steady(parts);
+  if (formulas.size() == 3) {
+    if (expressions)
+      load.traction_function = vector_of(parts);
+    else
+      load.tractions = {Vec3(formulas[0].number, formulas[1].number, formulas[2].number)};
+    return load;
+  }
   load.follower = follower;
+  if (expressions)
+    load.pressure_function = parts.front();
+  else
+    load.pressures = numbers(formulas);
   return load;
 }
 
-bool follows(const Record& record, Key<bool> follower, const std::vector<double>& pressure, const Body& body) {
+bool follows(const Record& record, Key<bool> follower, const Formulas& pressure, const Body& body) {
   if (!record.has(follower)) return !body.small_strain;
   if (record[follower] && pressure.size() == 3)
     refuse(record, "follower = true has no meaning for a traction vector (three numbers), which keeps its direction");

@@ -5,14 +5,24 @@
 #include <variant>
 #include <vector>
 
+#include "msml/core/formula.hpp"
 #include "operators/simulate/body.hpp"
 #include "operators/simulate/selection.hpp"
 
 namespace msml::simulation {
 
-/// What acts on a body in the steps that list it.
+/// Displacements or velocities at the start of the simulation.
+struct InitialState {
+  bool velocity = false;  ///< or displacement
+  std::vector<int> nodes;
+  std::vector<Vec3> values;  ///< one per node
+};
+
+/// What acts on a body in the steps that list it; an initial state acts at the start.
 struct Condition {
-  std::variant<fe::Prescribed, fe::NodalForce, fe::FaceLoad> what;
+  std::variant<fe::Prescribed, fe::NodalForce, fe::FaceLoad, fe::BodyForce, fe::Slide, std::vector<fe::Spring>,
+               InitialState>
+      what;
   bool lasting = false;  ///< a displacement that holds in later steps too, where they say nothing of its nodes
 };
 
@@ -27,6 +37,11 @@ ConditionFactory force_constraint();
 ConditionFactory surface_pressure();
 ConditionFactory surface_pressure_on_mesh();
 ConditionFactory surface_traction();
+ConditionFactory body_force();
+ConditionFactory symmetry_plane();
+ConditionFactory roller();
+ConditionFactory initial_velocity();
+ConditionFactory initial_displacement();
 
 /// All of the above.
 std::vector<ConditionFactory> conditions();
@@ -39,24 +54,35 @@ struct CommonKeys {
 /// Adds `indices` (meaning nodes where the scene lists plain numbers, unless `indexes` says otherwise) and `forStep`.
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes = Indexed::nodes);
 
+/// Adds `table`, a factor in time on the numbers of the tag.
+Key<std::vector<double>> add_table(Description& description);
+/// The table as a function: linear between its times, constant outside; empty where the tag has none.
+fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table);
+
 /// Adds `components`, the axes that a prescribed displacement holds; absent = all three.
-Key<std::string> add_components(Description& description);
-/// Sets prescribed.components from the attribute. Throws Error for anything but a list of x, y and z.
-void read_components(const Record& record, Key<std::string> components, fe::Prescribed& prescribed);
+Key<Words> add_components(Description& description);
+/// Sets prescribed.components from the attribute.
+void read_components(const Record& record, Key<Words> components, fe::Prescribed& prescribed);
 
 /// The label of the tag, or the tag itself.
 std::string label(const Record& record);
 
-/// Three numbers for all, or three for each listed node: the values for selection.nodes. `attribute` names the numbers
-/// in the message.
-std::vector<Vec3> per_node(const Record& record, const std::vector<double>& numbers, const NodeSelection& selection,
-                           const std::string& attribute);
+/// What numbers or expressions mean at nodes.
+struct NodeValues {
+  std::vector<Vec3> values;     ///< one for all, or one per node of the selection
+  fe::VectorFunction function;  ///< set where an expression depends on time; then `values` is empty
+};
+/// Three numbers or expressions for all, or three numbers for each listed node: the values for selection.nodes.
+NodeValues per_node(const Record& record, Key<Formulas> key, const NodeSelection& selection, const Mesh& mesh);
 
-/// A load on faces from one number, one per listed face, or three as a traction vector. `follower` is for pressures.
-fe::FaceLoad face_load(const Record& record, const std::vector<double>& numbers, const FaceSelection& selection,
-                       const std::string& attribute, bool follower);
+/// Three functions as one.
+fe::VectorFunction vector_of(const std::vector<Function>& parts);
+
+/// A load on faces from one number or expression, one number per listed face, or three as a traction vector.
+/// `follower` is for pressures.
+fe::FaceLoad face_load(const Record& record, Key<Formulas> key, const FaceSelection& selection, bool follower);
 
 /// The follower attribute, whose default depends on the law.
-bool follows(const Record& record, Key<bool> follower, const std::vector<double>& pressure, const Body& body);
+bool follows(const Record& record, Key<bool> follower, const Formulas& pressure, const Body& body);
 
 }  // namespace msml::simulation

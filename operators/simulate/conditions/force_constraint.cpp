@@ -10,8 +10,11 @@ namespace msml::simulation {
 ConditionFactory force_constraint() {
   ConditionFactory tag("forceConstraint", "constraint", "A force on every node, which keeps its direction.");
   add_common(tag, "the nodes; or faces or elements, whose nodes are meant");
-  const auto force = tag.parameter<std::vector<double>>(
-      "force", {.unit = "force", .multiple_of = 3, .doc = "3 numbers, on every node the same, or 3 for each node"});
+  const auto force =
+      tag.parameter<Formulas>("force", {.unit = "force",
+                                        .multiple_of = 3,
+                                        .doc = "3 numbers or expressions, for every node, or 3 numbers for each node"});
+  const auto table = add_table(tag);
   tag.note("The force acts on every node in full; it is not shared between them. For a load by area: surfaceTraction.");
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter& reporter) -> Condition {
@@ -22,9 +25,12 @@ ConditionFactory force_constraint() {
             fmt::format("{}: no force acts on {} of the {} in indices, which belong to no element; name nodes of "
                         "the body",
                         located(record), with_commas(static_cast<long long>(lost)), counted(selection.listed, "node")));
+      NodeValues values = per_node(record, force, selection, *body.mesh);
       return {fe::NodalForce{.name = label(record),
                              .nodes = selection.nodes,
-                             .values = per_node(record, record[force], selection, "force")}};
+                             .values = std::move(values.values),
+                             .function = std::move(values.function),
+                             .factor = read_table(record, table)}};
     };
   });
   return tag;

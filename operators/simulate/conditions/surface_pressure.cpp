@@ -8,9 +8,11 @@ ConditionFactory surface_pressure() {
   ConditionFactory tag("surfacePressure", "constraint",
                        "Pressure on boundary faces; positive pushes against the outward normal.");
   add_common(tag, "triangle cells of the mesh, or nodes: then the boundary faces with all corners among them");
-  const auto pressure = tag.parameter<std::vector<double>>(
-      "pressure",
-      {.unit = "stress", .doc = "one number, one per face, or three: a traction vector per reference area"});
+  const auto pressure = tag.parameter<Formulas>(
+      "pressure", {.unit = "stress",
+                   .doc = "one number or expression, one number per face, or three: a traction vector per reference "
+                          "area"});
+  const auto table = add_table(tag);
   const auto follower = tag.parameter<bool>(
       "follower", {.optional = true,
                    .doc = "true: acts on the deformed face; absent: true, except where every law is of small strains"});
@@ -18,7 +20,9 @@ ConditionFactory surface_pressure() {
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter&) -> Condition {
       const bool follow = follows(record, follower, record[pressure], body);
-      return {face_load(record, record[pressure], select_faces(record, body), "pressure", follow)};
+      fe::FaceLoad load = face_load(record, pressure, select_faces(record, body), follow);
+      load.factor = read_table(record, table);
+      return {load};
     };
   });
   return tag;

@@ -10,16 +10,21 @@ ConditionFactory surface_pressure_on_mesh() {
                        "Pressure on the boundary faces that lie on triangles of a separate surface mesh.");
   const auto mesh = tag.input<Mesh>("mesh", "the surface: its triangles are matched with the faces by place");
   add_common(tag, "triangle cells of that surface, or its nodes", Indexed::faces);
-  const auto pressure = tag.parameter<std::vector<double>>(
-      "pressure",
-      {.unit = "stress", .doc = "one number, one per face, or three: a traction vector per reference area"});
+  const auto pressure = tag.parameter<Formulas>(
+      "pressure", {.unit = "stress",
+                   .doc = "one number or expression, one number per face, or three: a traction vector per reference "
+                          "area"});
+  const auto table = add_table(tag);
   const auto pulse = tag.parameter<std::string>("pulse", {.optional = true, .doc = "not available yet"});
   const auto follower = tag.parameter<bool>("follower", {.optional = true, .doc = "as in surfacePressure"});
   tag.build([=](const Record& record) -> ConditionBuilder {
-    if (record.has(pulse)) refuse(record, "pulse is not available yet: a pressure is constant in its step");
+    if (record.has(pulse))
+      refuse(record, "pulse is not available yet; a table or an expression in t gives the pressure over time");
     return [=, &record](const Body& body, Reporter&) -> Condition {
       const bool follow = follows(record, follower, record[pressure], body);
-      return {face_load(record, record[pressure], select_faces_on(record, body, record[mesh]), "pressure", follow)};
+      fe::FaceLoad load = face_load(record, pressure, select_faces_on(record, body, record[mesh]), follow);
+      load.factor = read_table(record, table);
+      return {load};
     };
   });
   return tag;

@@ -8,11 +8,14 @@ ConditionFactory surface_traction() {
   ConditionFactory tag("surfaceTraction", "constraint",
                        "Force per reference area on boundary faces, which keeps its direction.");
   add_common(tag, "triangle cells of the mesh, or nodes: then the boundary faces with all corners among them");
-  const auto traction = tag.parameter<std::vector<double>>(
-      "traction", {.unit = "stress", .counts = {3}, .doc = "the vector, on every face the same"});
+  const auto traction = tag.parameter<Formulas>(
+      "traction", {.unit = "stress", .counts = {3}, .doc = "the vector: 3 numbers or expressions"});
+  const auto table = add_table(tag);
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter&) -> Condition {
-      return {face_load(record, record[traction], select_faces(record, body), "traction", false)};
+      fe::FaceLoad load = face_load(record, traction, select_faces(record, body), false);
+      load.factor = read_table(record, table);
+      return {load};
     };
   });
   return tag;

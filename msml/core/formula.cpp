@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions by muParser, which enters here alone.
+#include "msml/core/formula.hpp"
+
+#include <fmt/format.h>
+#include <muParser.h>
+
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+namespace msml {
+namespace {
+
+/// The four variables of an expression.
+struct Place {
+  double X = 0, Y = 0, Z = 0, t = 0;
+};
+
+void define(mu::Parser& parser, Place& place) {
+  parser.ClearConst();
+  parser.DefineConst("pi", std::numbers::pi);
+  parser.DefineConst("e", std::numbers::e);
+  parser.DefineVar("X", &place.X);
+  parser.DefineVar("Y", &place.Y);
+  parser.DefineVar("Z", &place.Z);
+  parser.DefineVar("t", &place.t);
+}
+
+/// The name that starts at a position of a text, or one character.
+std::string token_at(const std::string& text, std::size_t position) {
+  std::size_t end = position;
+  while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
+  return text.substr(position, std::max<std::size_t>(1, end - position));
+}
+
+/// Position of an assignment, which muParser would carry out; npos if there is none.
+std::size_t assignment(const std::string& text) {
+  for (std::size_t i = text.find('='); i != std::string::npos; i = text.find('=', i + 1)) {
+    const bool joined = i > 0 && std::string("<>!=").find(text[i - 1]) != std::string::npos;
+    const bool followed = i + 1 < text.size() && text[i + 1] == '=';
+    if (!joined && !followed) return i;
+    if (followed) ++i;
+  }
+  return std::string::npos;
+}
+
+std::string words_for(const std::string& text, const mu::Parser::exception_type& fault) {
+  const auto at = static_cast<std::size_t>(std::max(0, fault.GetPos()));
+  const std::string place =
+      at < text.size() ? fmt::format("'{}' at position {}", shortened(token_at(text, at)), at + 1) : "the end";
+  switch (fault.GetCode()) {
+    case mu::ecUNASSIGNABLE_TOKEN:
+      return place + " is unknown";
+    case mu::ecMISSING_PARENS:
+      return "a closing parenthesis is missing";
+    case mu::ecUNEXPECTED_EOF:
+      return "it ends too early";
+    case mu::ecTOO_FEW_PARAMS:
+      return "a function before " + place + " has too few arguments";
+    case mu::ecTOO_MANY_PARAMS:
+      return "a function before " + place + " has too many arguments";
+    default:
+      return place + " does not fit there";
+  }
+}
+
+}  // namespace
+
+std::string formula_language() {
+  return "X, Y, Z (reference position), t (time), pi, e, numbers, + - * / ^ ( ) < > <= >= == != && || ?: and sin, cos, "
+         "tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, acosh, atanh, exp, ln, log2, log10, sqrt, abs, sign, "
+         "rint, min, max, sum, avg";
+}
+
+FormulaFacts examine(const std::string& expression) {
+  FormulaFacts facts;
+  const auto fault = [&](const std::string& what) {
+    facts.problem = what + "; an expression may use " + formula_language();
+    return facts;
+  };
+  if (expression.find_first_not_of(" \t\r\n") == std::string::npos) return fault("it is empty");
+  if (const std::size_t at = assignment(expression); at != std::string::npos)
+    return fault(fmt::format("'=' at position {} does not fit there (to compare, ==)", at + 1));
+  mu::Parser parser;
+  Place place;
+  define(parser, place);
+  try {
+    parser.SetExpr(expression);
+    int count = 0;
+    facts.value = *parser.Eval(count);
+    if (count != 1) return fault(fmt::format("it gives {} values instead of one", count));
+    for (const auto& [name, variable] : parser.GetUsedVar()) (name == "t" ? facts.of_time : facts.of_position) = true;
+  } catch (const mu::Parser::exception_type& error) {
+    return fault(words_for(expression, error));
+  }
+  return facts;
+}
+
+struct Function::Parsed {
+  Formula formula;
+  std::string name;
+  Range range;
+  Location where;
+  bool of_position = false, of_time = false;
+  std::mutex turn;  ///< muParser evaluates on a stack of its own
+  Place place;
+  mu::Parser parser;
+
+  Parsed(const Formula& f, std::string n, const Range& r, const Location& w)
+      : formula(f), name(std::move(n)), range(r), where(w) {
+    const FormulaFacts facts = examine(formula.text);
+    if (!facts.problem.empty())
+      throw Error(fmt::format("{} = {}: {}", name, shortened(formula.text), facts.problem), where);
+    of_position = facts.of_position;
+    of_time = facts.of_time;
+    define(parser, place);
+    parser.SetExpr(formula.text);
+  }
+  double at(const Eigen::Vector3d& X, double t) {
+    const std::lock_guard lock(turn);
+    place = {X[0], X[1], X[2], t};
+    return parser.Eval();
+  }
+};
+
+Function::Function(const Formula& formula, std::string name, const Range& range, const Location& where)
+    : number_(formula.number),
+      parsed_(formula.constant() ? nullptr : std::make_shared<Parsed>(formula, std::move(name), range, where)) {}
+
+double Function::operator()(const Eigen::Vector3d& X, double t) const {
+  if (!parsed_) return number_;
+  const double value = parsed_->at(X, t);
+  if (!parsed_->range.contains(value))
+    throw Error(fmt::format("{} = {} is {} at X = {:g}, Y = {:g}, Z = {:g}, t = {:g}, which is not {}", parsed_->name,
+                            shortened(parsed_->formula.text), value, X[0], X[1], X[2], t,
+                            std::isfinite(value) ? parsed_->range.str() : "finite"),
+                parsed_->where);
+  return value;
+}
+
+bool Function::of_position() const { return parsed_ && parsed_->of_position; }
+bool Function::of_time() const { return parsed_ && parsed_->of_time; }
+
+Function function(const Record& record, Key<Formula> key) {
+  const Slot& slot = record.description->slots()[static_cast<std::size_t>(key.slot)];
+  return Function(record[key], slot.name, slot.range, record.where);
+}
+
+std::vector<Function> functions(const Record& record, Key<Formulas> key) {
+  const Slot& slot = record.description->slots()[static_cast<std::size_t>(key.slot)];
+  std::vector<Function> list;
+  for (const Formula& formula : record[key]) list.emplace_back(formula, slot.name, slot.range, record.where);
+  return list;
+}
+
+}  // namespace msml

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions: values, facts, faults.
+#include "msml/core/formula.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <thread>
+
+namespace msml {
+namespace {
+
+Function of(const std::string& text, const Range& range = {}) {
+  return Function(Formula(text), "force", range, {"s.xml", 4});
+}
+
+TEST(Formula, HasTheValueOfItsExpression) {
+  const Eigen::Vector3d X(0.5, -2, 3);
+  EXPECT_DOUBLE_EQ(of("X*Y + Z^2 - t")(X, 0.25), 0.5 * -2 + 9 - 0.25);
+  EXPECT_DOUBLE_EQ(of("sin(pi*X) + ln(e)")(X, 0), 2);
+  EXPECT_DOUBLE_EQ(of("-Z^2")(X, 0), -9);
+  EXPECT_DOUBLE_EQ(of("2^3^2 + 0*X")(X, 0), 512);
+  EXPECT_DOUBLE_EQ(of("t < 1 ? 5 : 7")(X, 1), 7);
+  EXPECT_EQ(Function(3.5)(X, 1), 3.5);
+}
+
+TEST(Formula, KnowsWhatItDependsOn) {
+  EXPECT_TRUE(of("t").of_time());
+  EXPECT_FALSE(of("t").of_position());
+  EXPECT_TRUE(of("Y + 1").of_position());
+  EXPECT_FALSE(of("Y + 1").of_time());
+  EXPECT_TRUE(Function(2).constant());
+  const FormulaFacts facts = examine("3*pi");
+  EXPECT_FALSE(facts.of_position || facts.of_time);
+  EXPECT_DOUBLE_EQ(facts.value, 3 * 3.14159265358979323846);
+}
+
+TEST(Formula, ValueThatIsNotFiniteIsAnError) {
+  try {
+    of("1/X")({0, 1, 2}, 0.5);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(std::string(error.what()), "force = 1/X is inf at X = 0, Y = 1, Z = 2, t = 0.5, which is not finite");
+    EXPECT_EQ(error.where().line, 4);
+  }
+}
+
+TEST(Formula, ValueOutsideItsRangeIsAnError) {
+  EXPECT_EQ(of("X", positive())({1, 0, 0}, 0), 1);
+  EXPECT_THROW(of("X", positive())({-1, 0, 0}, 0), Error);
+}
+
+TEST(Formula, ThreadsDoNotDisturbEachOther) {
+  const Function square = of("X*X + t");
+  std::vector<std::thread> threads;
+  std::vector<int> wrong(4, 0);
+  for (int k = 0; k < 4; ++k)
+    threads.emplace_back([&, k] {
+      for (int i = 0; i < 2000; ++i)
+        wrong[static_cast<std::size_t>(k)] += square({1.0 * i, 0, 0}, k) != 1.0 * i * i + k;
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, (std::vector<int>(4, 0)));
+}
+
+}  // namespace
+}  // namespace msml

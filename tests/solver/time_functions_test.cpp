@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Loads and supports as functions of position and time, and body forces.
+#include <gtest/gtest.h>
+
+#include "solver/equations.hpp"
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+
+constexpr std::array kinds{CellKind::tet4, CellKind::tet10};
+
+Vec3 total(const Vector& v) {
+  Vec3 sum = Vec3::Zero();
+  for (Eigen::Index k = 0; k < v.size(); k += 3) sum += v.segment<3>(k);
+  return sum;
+}
+
+/// Sum of the loads of the first step at a share and a time.
+Vec3 acting(const Model& model, double share, double time, bool leaving = false) {
+  const Equations equations(model);
+  const ActingLoads loads{&equations.loads(0), share, time, leaving};
+  Vector force = Vector::Zero(equations.size());
+  add_dead(loads, force);
+  add_followers(loads, equations.positions(), Vector::Zero(equations.size()), force, nullptr);
+  return total(force);
+}
+
+/// A box of 2 x 1 x 3; its top is at z = 3.
+Model box(CellKind kind) { return make_model(box_mesh(2, 2, 2, {2, 1, 3}, kind), {.strain = Strain::small}, 5); }
+
+std::vector<Face> top(const Model& model) {
+  return faces_where(*model.mesh, [](const Vec3& x) { return x[2] > 3 - 1e-9; });
+}
+
+std::vector<int> all_elements(const Model& model) {
+  std::vector<int> all(static_cast<std::size_t>(model.mesh->cell_count()));
+  for (std::size_t e = 0; e < all.size(); ++e) all[e] = static_cast<int>(e);
+  return all;
+}
+
+TEST(TimeFunctions, FactorReplacesTheRamp) {
+  Model model = box(CellKind::tet4);
+  model.steps[0].forces = {{.name = "f", .nodes = {1, 2}, .values = {Vec3(1, 0, 2)}}};
+  EXPECT_LT((acting(model, 0.25, 3) - 0.5 * Vec3(1, 0, 2)).norm(), 1e-14);
+  model.steps[0].forces[0].factor = [](double t) { return t * t; };
+  EXPECT_LT((acting(model, 0.25, 3) - 18 * Vec3(1, 0, 2)).norm(), 1e-13);
+  EXPECT_EQ(acting(model, 0.25, 3, true).norm(), 0);  // of the step before: gone
+}
+
+TEST(TimeFunctions, NodalForceIsAFunctionOfPlaceAndTime) {
+  Model model = box(CellKind::tet4);
+  const int corner = nearest_point(*model.mesh, {2, 1, 3});
+  model.steps[0].forces = {
+      {.name = "f", .nodes = {corner}, .values = {}, .function = [](const Vec3& X, double t) { return Vec3(t * X); }}};
+  EXPECT_LT((acting(model, 0.5, 4) - Vec3(8, 4, 12)).norm(), 1e-13);
+}
+
+// Over the top, 2 x 1: int X = 2, int X Y = 1, int X^2 = 8/3.
+TEST(TimeFunctions, TractionIsIntegratedOverTheFace) {
+  for (const CellKind kind : kinds) {
+    Model model = box(kind);
+    model.steps[0].face_loads = {{.name = "f", .faces = top(model), .traction_function = [](const Vec3& X, double t) {
+                                    return Vec3(X[0] * t, X[0] * X[1], X[0] * X[0]);
+                                  }}};
+    EXPECT_LT((acting(model, 0.5, 3) - Vec3(6, 1, 8.0 / 3)).norm(), 1e-13);
+    model.steps[0].face_loads[0].steady = true;  // ramps, at t = 0
+    EXPECT_LT((acting(model, 0.5, 3) - 0.5 * Vec3(0, 1, 8.0 / 3)).norm(), 1e-13);
+  }
+}
+
+TEST(TimeFunctions, PressureIsIntegratedOverTheFaceDeadOrFollowing) {
+  for (const CellKind kind : kinds)
+    for (const bool follower : {false, true}) {
+      Model model = box(kind);
+      model.steps[0].face_loads = {
+          {.name = "f", .faces = top(model), .follower = follower, .pressure_function = [](const Vec3& X, double t) {
+             return t * X[0] * X[1];
+           }}};
+      EXPECT_LT((acting(model, 0.5, 3) - Vec3(0, 0, -3)).norm(), 1e-13);
+      model.steps[0].face_loads[0].factor = [](double) { return 2.0; };
+      EXPECT_LT((acting(model, 0.5, 3) - Vec3(0, 0, -6)).norm(), 1e-13);
+      EXPECT_EQ(acting(model, 0.5, 3, true).norm(), 0);
+      model.steps[0].face_loads[0] = {
+          .name = "f", .faces = top(model), .pressures = {4}, .follower = follower, .factor = [](double t) {
+            return t;
+          }};
+      EXPECT_LT((acting(model, 0.5, 3) - Vec3(0, 0, -24)).norm(), 1e-12);
+    }
+}
+
+// In the box, 2 x 1 x 3: int X = 6, int Y^2 = 2, volume 6.
+TEST(BodyForce, IsIntegratedOverTheVolume) {
+  for (const CellKind kind : kinds) {
+    Model model = box(kind);
+    model.steps[0].body_forces = {{.name = "b",
+                                   .elements = all_elements(model),
+                                   .function = [](const Vec3& X, double t) { return Vec3(X[0], X[1] * X[1], t); }}};
+    EXPECT_LT((acting(model, 0.5, 3) - Vec3(6, 2, 18)).norm(), 1e-12);
+    model.steps[0].body_forces[0].elements = {0};
+    EXPECT_NEAR(acting(model, 0.5, 3)[2], 3 * 6.0 / 48, 1e-13);  // one of 48 equal tetrahedra
+  }
+}
+
+TEST(BodyForce, OfTheWeightIsGravity) {
+  for (const CellKind kind : kinds) {
+    Model model = box(kind);
+    model.steps[0].gravity = Vec3(1, 2, -9.81);
+    const Vector weight = Equations(model).loads(0).dead;
+    model.steps[0].gravity.setZero();
+    model.steps[0].body_forces = {{.name = "b", .elements = all_elements(model), .value = 5 * Vec3(1, 2, -9.81)}};
+    EXPECT_LT((Equations(model).loads(0).dead - weight).norm(), 1e-12 * weight.norm());
+  }
+}
+
+TEST(TimeFunctions, SupportsFollowTimeAndTheLaterConditionWins) {
+  const Model model = box(CellKind::tet4);
+  const Equations equations(model);
+  Step step;
+  const int corner = nearest_point(*model.mesh, {2, 1, 3});
+  step.prescribed = {
+      {.name = "a", .nodes = {corner}, .values = {}, .function = [](const Vec3& X, double t) { return Vec3(t * X); }},
+      {.name = "b",
+       .nodes = {corner},
+       .values = {Vec3(7, 7, 7)},
+       .components = {false, true, false},
+       .ramp = Ramp::step}};
+  const Supports supports = make_supports(step, equations.numbering(), Vector::Zero(equations.size()));
+  const int n = 3 * equations.numbering().number_of[static_cast<std::size_t>(corner)];
+  EXPECT_LT((Vec3(supports.at(0.5, 2).segment<3>(n)) - Vec3(4, 7, 6)).norm(), 1e-14);
+}
+
+// A linear body: the displacement is the load's factor at the time of each state times that of the full load.
+TEST(TimeFunctions, StaticStatesFollowTheLoadCurve) {
+  Model model = box(CellKind::tet4);
+  model.settings.integrator = Integrator::static_;
+  Step& step = model.steps[0];
+  step.prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[2] < 1e-9; }))};
+  step.face_loads = {{.name = "pull", .faces = top(model), .tractions = {Vec3(0, 0, 1)}}};
+  const Points full = solve(model, {}).state.displacement;
+  step.face_loads[0].factor = [](double t) { return std::sin(t); };
+  step.dt = 0.1;
+  step.count = 20;
+  model.settings.load_steps = 4;
+  std::vector<double> times;
+  const Outcome outcome = solve(model, [&](const State& state) {
+    times.push_back(state.time);
+    EXPECT_LT((state.displacement - std::sin(state.time) * full).norm(), 1e-7 * full.norm());
+    return true;
+  });
+  EXPECT_EQ(outcome.stop, Stop::converged);
+  EXPECT_EQ(times, (std::vector<double>{0, 0.5, 1, 1.5, 2}));
+}
+
+}  // namespace
+}  // namespace msml::fe
