@@ -36,20 +36,20 @@ void show_progress(const fe::Model& model, const fe::State& state, Reporter& rep
                                 increments(model, step), state.time));
 }
 
-fe::Outcome run(const Simulation& simulation, std::vector<SeriesWriter>& writers, Reporter& reporter) {
+using Writers = std::vector<std::unique_ptr<simulation::OutputWriter>>;
+
+fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writers& writers, Reporter& reporter) {
   return fe::solve(simulation.model, [&](const fe::State& state) {
-    StateFields fields(simulation.model, simulation.body, state);
-    for (SeriesWriter& writer : writers)
-      if (writer.wants(state)) writer.write(state, fields);
+    StateFields fields(simulation.model, simulation.body, measurer, state);
+    for (const auto& writer : writers)
+      if (writer->wants(state)) writer->write(state, fields);
     show_progress(simulation.model, state, reporter);
     return true;
   });
 }
 
-void finish(const Simulation& simulation, const fe::Outcome& outcome, std::vector<SeriesWriter>& writers,
+void finish(const Simulation& simulation, const fe::Outcome& outcome, const std::filesystem::path& folder,
             Reporter& reporter) {
-  StateFields fields(simulation.model, simulation.body, outcome.state);
-  for (SeriesWriter& writer : writers) writer.finish(outcome.state, fields);
   const simulation::WorstShape worst = simulation::worst_shape(simulation.body);
   const auto warnings = simulation::check_warnings(simulation, outcome, worst);
   const std::string settings = simulation::settings_json(simulation);
@@ -58,23 +58,23 @@ void finish(const Simulation& simulation, const fe::Outcome& outcome, std::vecto
   for (const std::string& warning : warnings) reporter.warn(warning);
   reporter.record("settings", settings);
   reporter.record("check", check);
-  for (const SeriesWriter& writer : writers)
-    write_whole(writer.folder() / (writer.request().id + ".json"),
-                simulation::report_json(simulation, settings, check));
+  for (const simulation::OutputRequest& request : simulation.outputs)
+    write_whole(folder / (request.id + ".json"), simulation::report_json(simulation, settings, check));
 }
 
 void simulate_object(Context& context) {
   const Simulation simulation = simulation::build_model(context.args(), context.reporter(), context.threads());
-  std::vector<SeriesWriter> writers;
-  for (const simulation::OutputRequest& request : simulation.outputs)
-    writers.emplace_back(simulation, request, context.output_folder());
-  const fe::Outcome outcome = run(simulation, writers, context.reporter());
-  finish(simulation, outcome, writers, context.reporter());
+  simulation.model.check();
+  Writers writers = simulation::make_writers(simulation, context.output_folder(), context.reporter());
+  const fe::Measurer measurer(simulation.model);
+  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter());
+  StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
+  for (const auto& writer : writers) writer->finish(outcome.state, fields);
+  finish(simulation, outcome, context.output_folder(), context.reporter());
   if (outcome.stop != fe::Stop::converged)
     throw Error(outcome.diagnosis, simulation.where,
                 outcome.stop == fe::Stop::interrupted ? Failure::interrupted : Failure::not_converged);
-  for (std::size_t i = 0; i < writers.size(); ++i)
-    context.set(static_cast<int>(i), std::make_shared<const Series>(writers[i].series()));
+  for (std::size_t i = 0; i < writers.size(); ++i) context.set(static_cast<int>(i), writers[i]->value());
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ void add_scene_descriptions(Registry& registry) {
   for (const auto& kind : simulation::mesh_kinds()) add(registry, kind);
   fe::describe_materials(registry);
   add(registry, simulation::mass());
+  add(registry, simulation::point_mass());
   for (const auto& condition : simulation::conditions()) add(registry, condition);
   for (const auto& output : simulation::outputs()) add(registry, output);
   add(registry, simulation::solver());

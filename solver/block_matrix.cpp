@@ -26,7 +26,8 @@ int Pattern::find(int row, int column) const {
   return static_cast<int>(std::lower_bound(first, last, column) - columns.begin());
 }
 
-PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes) {
+PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes,
+                        const std::vector<std::array<int, 2>>& links) {
   const std::size_t elements = element_nodes.size() / static_cast<std::size_t>(nodes);
   std::vector<int> first(static_cast<std::size_t>(count) + 1, 0);
   for (const int node : element_nodes) ++first[static_cast<std::size_t>(node) + 1];
@@ -36,6 +37,10 @@ PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int no
     for (int a = 0; a < nodes; ++a)
       elements_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(element_nodes[e * nodes + a])]++)] =
           static_cast<int>(e);
+  std::vector<std::array<int, 2>> linked;  // row, column
+  for (const auto& [a, b] : links) linked.insert(linked.end(), {{a, b}, {b, a}});
+  std::sort(linked.begin(), linked.end());
+  auto link = linked.begin();
   auto pattern = std::make_shared<Pattern>();
   pattern->offsets.reserve(static_cast<std::size_t>(count) + 1);
   std::vector<int> row;
@@ -45,6 +50,7 @@ PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int no
       const auto e = element_nodes.begin() + static_cast<long>(elements_of[static_cast<std::size_t>(k)]) * nodes;
       row.insert(row.end(), e, e + nodes);
     }
+    for (; link != linked.end() && (*link)[0] == r; ++link) row.push_back((*link)[1]);
     std::sort(row.begin(), row.end());
     row.erase(std::unique(row.begin(), row.end()), row.end());
     const auto self = std::lower_bound(row.begin(), row.end(), r) - row.begin();

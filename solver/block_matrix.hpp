@@ -2,6 +2,7 @@
 // Sparse matrices with one 3 x 3 block (or one number) per pair of neighbouring nodes.
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -20,8 +21,9 @@ struct Pattern {
 };
 using PatternPtr = std::shared_ptr<const Pattern>;
 
-/// The pattern of a list of elements: `nodes` node numbers each, all below `count`.
-PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes);
+/// The pattern of a list of elements: `nodes` node numbers each, all below `count`; and of pairs of nodes beside them.
+PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes,
+                        const std::vector<std::array<int, 2>>& links = {});
 
 /// values[9 p + 3 i + j] is entry (i, j) of the block at position p.
 struct BlockMatrix {

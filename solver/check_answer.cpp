@@ -18,13 +18,16 @@ Vec3 sum(const Vector& v) {
   return total;
 }
 
-void check_balance(const Run& run, const Mask& fixed, Check& check) {
+void check_balance(const Run& run, const Supports& supports, Check& check) {
   const Forces& f = run.between ? *run.between : run.newton.forces();
-  const Vector residual = f.residual();
+  Vector residual = f.residual();
+  supports.slides.project(residual);
   check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm()});
-  if (check.load_scale > 0) check.residual = free_norm(residual, fixed) / check.load_scale;
+  if (check.load_scale > 0) check.residual = free_norm(residual, supports.fixed) / check.load_scale;
   check.sum_loads = sum(f.external);
   check.sum_reactions = sum(run.now.reaction);
+  // Springs to points in space hold from outside: what they give is all that internal forces sum to.
+  if (!run.model.steps[static_cast<std::size_t>(run.now.step)].springs.empty()) check.sum_reactions -= sum(f.internal);
   check.sum_inertia = sum(f.inertia);
   check.sum_damping = sum(f.damping);
   const double largest = std::max(
@@ -47,7 +50,7 @@ void check_deformation(const Run& run, Check& check) {
     }
   }
   check.volume = volume;
-  check.volume_change = (deformed - volume) / volume;
+  if (volume > 0) check.volume_change = (deformed - volume) / volume;
   check.mass = run.equations.total_mass();
 }
 
@@ -66,15 +69,17 @@ Vector smooth_start(const Vector& X, const Mask& fixed) {
 
 /// Lowest period of K x = w^2 M x by inverse iteration, to about 1e-3; 0 if K cannot be factorised (a body free to
 /// move).
-double lowest_period(Run& run, const Mask& fixed) {
+double lowest_period(Run& run, const Supports& supports) {
   LinearSystem& linear = run.newton.linear();
-  const BlockMatrix& K = run.newton.tangent();
+  BlockMatrix K = run.newton.tangent();
+  supports.slides.project(K);
   const ScalarMatrix& M = run.equations.mass();
-  if (linear.factor(K, fixed) != LinearStatus::done) return 0;
-  Vector x = smooth_start(run.equations.positions(), fixed), Mx, y;
+  if (linear.factor(K, supports.fixed) != LinearStatus::done) return 0;
+  Vector x = smooth_start(run.equations.positions(), supports.fixed), Mx, y;
   double square = 0;
   for (int iteration = 0; iteration < 15; ++iteration) {
     multiply(M, x, Mx);
+    supports.slides.project(Mx);
     const double size = std::sqrt(dot(x, Mx));
     if (!(size > 0)) return 0;
     x /= size;
@@ -96,7 +101,9 @@ double lowest_period(Run& run, const Mask& fixed) {
 long count_unknowns(const Model& model, const Numbering& numbering, int step) {
   const Supports supports =
       make_supports(model.steps[static_cast<std::size_t>(step)], numbering, Vector::Zero(3 * numbering.nodes()));
-  return std::count(supports.fixed.begin(), supports.fixed.end(), 0);
+  long held = 0;
+  for (const Mat3& P : supports.slides.projection) held += std::lround(3 - P.trace());
+  return std::count(supports.fixed.begin(), supports.fixed.end(), 0) - held;
 }
 
 double euler_loss_per_cycle(double period, double dt) {
@@ -110,11 +117,11 @@ Check check_answer(Run& run) {
   const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
   Check check;
   const bool good = run.outcome.stop == Stop::converged || run.outcome.stop == Stop::interrupted;
-  if (good) check_balance(run, supports.fixed, check);
+  if (good) check_balance(run, supports, check);
   check_deformation(run, check);
   const Integrator integrator = run.model.settings.integrator;
   if (is_dynamic(integrator) && !is_explicit(integrator) && good) {
-    check.lowest_period = lowest_period(run, supports.fixed);
+    check.lowest_period = lowest_period(run, supports);
     if (run.model.settings.integrator == Integrator::implicit_euler && check.lowest_period > 0)
       check.damped_per_cycle = euler_loss_per_cycle(check.lowest_period, step.dt);
   }

@@ -29,13 +29,21 @@ Equations::Equations(const Model& model)
       elements_(make_elements(model)),
       X_(to_vector(elements_->numbering(), model.mesh->points)),
       mass_(elements_->pattern()) {
+  for (const PointMass& point : model.point_masses) {
+    const auto node = static_cast<std::size_t>(numbering().number_of[static_cast<std::size_t>(point.node)]);
+    mass_.values[static_cast<std::size_t>(mass_.pattern->diagonal[node])] += point.mass;
+  }
   elements_->add_mass((settings_.lumped_mass && is_dynamic(settings_.integrator)) || is_explicit(settings_.integrator),
                       mass_);
   for (const Region& region : model.regions)
     if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
   for (const Region& region : model.regions) has_history_ = has_history_ || !region.prony.tau.empty();
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
-  for (const LoadSet& set : loads_) has_followers_ = has_followers_ || !set.followers.empty();
+  for (const LoadSet& set : loads_) {
+    has_followers_ = has_followers_ || !set.followers.empty();
+    if (!set.springs.empty()) small_strain_ = false;
+    for (const SpringLink& spring : set.springs) has_dampers_ = has_dampers_ || spring.damping > 0;
+  }
 }
 
 double Equations::total_mass() const {
@@ -49,6 +57,10 @@ void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, F
   forces.internal = Vector::Zero(size());
   if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
+  for (const ActingLoads& acting : loads)
+    if (!acting.leaving)
+      forces.found.energy +=
+          add_springs(acting.set->springs, X_, u, want == Want::definite_tangent, forces.internal, tangent);
   evaluate_loads(u, loads, forces, followers);
 }
 
@@ -62,7 +74,7 @@ void Equations::evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces
   }
 }
 
-void Equations::evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0,
+void Equations::evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C,
                                 Forces& forces) const {
   multiply(mass_, acceleration, forces.inertia);
   forces.damping = Vector::Zero(size());
@@ -71,9 +83,9 @@ void Equations::evaluate_motion(const Vector& velocity, const Vector& accelerati
     multiply(mass_, velocity, product);
     forces.damping += settings_.damping_mass * product;
   }
-  if (settings_.damping_stiffness > 0 && K0) {
-    multiply(*K0, velocity, product);
-    forces.damping += settings_.damping_stiffness * product;
+  if (C) {
+    multiply(*C, velocity, product);
+    forces.damping += product;
   }
 }
 

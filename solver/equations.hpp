@@ -60,8 +60,9 @@ class Equations {
   bool has_followers() const { return has_followers_; }  ///< true if a step has a follower pressure
   /// The external forces alone.
   void evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces& forces, BlockMatrix* followers) const;
-  /// Inertia and Rayleigh damping alpha M v + beta K0 v; `K0` may be null where beta = 0.
-  void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* K0, Forces& forces) const;
+  /// Inertia M a, and damping alpha M v + C v; `C` may be null.
+  void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C, Forces& forces) const;
+  bool has_dampers() const { return has_dampers_; }  ///< true if a spring of a step has one
 
  private:
   const Settings settings_;
@@ -69,7 +70,7 @@ class Equations {
   Vector X_;
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;
-  bool small_strain_ = true, has_followers_ = false, has_history_ = false;
+  bool small_strain_ = true, has_followers_ = false, has_dampers_ = false, has_history_ = false;
 };
 
 }  // namespace msml::fe

@@ -52,7 +52,7 @@ double Newton::line_search(const Increment& increment, const Vector& direction, 
   for (int trial = 0; trial < 25; ++trial) {
     u = start + step * direction;
     evaluate(increment, u, want_, false);
-    const Vector now = this->residual(increment);
+    const Vector now = free_residual(increment);
     const double new_norm = free_norm(now, increment.fixed), new_slope = dot(direction, now);
     const bool sound = forces_.found.finite && std::isfinite(new_norm) && std::isfinite(new_slope);
     if (!sound || (guarded && forces_.found.smallest_J <= 0)) {

@@ -7,6 +7,7 @@
 #include <tbb/task_arena.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -40,18 +41,79 @@ double corner_volume(const Mesh& mesh, int cell) {
   return std::abs(edges.topLeftCorner(dimension, dimension).determinant());
 }
 
-void measure_element(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
+void add_nine(const Mat3& a, double weight, double* out) {
+  for (int k = 0; k < 9; ++k) out[k] += weight * a(k / 3, k % 3);
+}
+
+void add_six(const Mat3& a, double weight, double* out) {
+  constexpr int rows[6] = {0, 1, 2, 0, 1, 0}, columns[6] = {0, 1, 2, 1, 2, 2};
+  for (int k = 0; k < 6; ++k) out[k] += weight * 0.5 * (a(rows[k], columns[k]) + a(columns[k], rows[k]));
+}
+
+/// Room for what is asked for, zero.
+ElementResults empty_results(const ElementRequest& request, std::size_t cells) {
+  ElementResults results;
+  if (request.law) {
+    results.cauchy.assign(6 * cells, 0);
+    results.strain.assign(6 * cells, 0);
+    results.energy_density.assign(cells, 0);
+  }
+  if (request.J) results.J.assign(cells, 0);
+  if (request.rotation) results.rotation.assign(cells, 0);
+  if (request.tensors) {
+    results.deformation_gradient.assign(9 * cells, 0);
+    results.first_piola.assign(9 * cells, 0);
+    results.second_piola.assign(6 * cells, 0);
+    results.green_lagrange.assign(6 * cells, 0);
+  }
+  return results;
+}
+
+double volume_of(const ElementPoints& points) {
+  double volume = 0;
+  for (int q = 0; q < points.count; ++q) volume += points.weight[q];
+  return volume;
+}
+
+void measure_law(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
   Measures measures;
   law.measure({&points.gradient, 1}, {&measures, 1});
-  const Deformation d = deformation(points);
+  const double volume = volume_of(points);
   for (int q = 0; q < points.count; ++q) {
-    const double share = points.weight[q] / d.volume;
+    const double share = points.weight[q] / volume;
     add_six(measures.cauchy, q, share, results.cauchy.data() + 6 * cell);
     add_six(measures.strain, q, share, results.strain.data() + 6 * cell);
     results.energy_density[cell] += share * measures.energy[q];
   }
-  results.J[cell] = d.smallest_J;
-  results.rotation[cell] = d.largest_rotation;
+}
+
+void measure_tensors(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
+  Response response;
+  law.evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
+  const double volume = volume_of(points);
+  for (int q = 0; q < points.count; ++q) {
+    const double share = points.weight[q] / volume;
+    const Mat3 H = at(points.gradient, q), F = Mat3::Identity() + H, P = at(response.P, q);
+    add_nine(F, share, results.deformation_gradient.data() + 9 * cell);
+    add_nine(P, share, results.first_piola.data() + 9 * cell);
+    add_six(0.5 * (H + H.transpose() + H.transpose() * H), share, results.green_lagrange.data() + 6 * cell);
+    if (F.determinant() != 0) add_six(Mat3(F.inverse() * P), share, results.second_piola.data() + 6 * cell);
+  }
+}
+
+double smallest_J(const ElementPoints& points) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int q = 0; q < points.count; ++q)
+    smallest = std::min(smallest, (Mat3::Identity() + at(points.gradient, q)).determinant());
+  return smallest;
+}
+
+void measure_element(const ElementPoints& points, const Law& law, std::size_t cell, const ElementRequest& request,
+                     ElementResults& results) {
+  if (request.law) measure_law(points, law, cell, results);
+  if (request.tensors) measure_tensors(points, law, cell, results);
+  if (request.J) results.J[cell] = smallest_J(points);
+  if (request.rotation) results.rotation[cell] = deformation(points).largest_rotation;
 }
 
 }  // namespace
@@ -80,28 +142,28 @@ Deformation deformation(const ElementPoints& points) {
   return d;
 }
 
-ElementResults element_results(const Model& model, const State& state) {
-  const std::unique_ptr<Elements> elements = make_elements(model);
-  const Numbering& numbering = elements->numbering();
-  const std::size_t cells = model.mesh->kinds.size();
-  ElementResults results;
-  results.cauchy.assign(6 * cells, 0);
-  results.strain.assign(6 * cells, 0);
-  results.energy_density.assign(cells, 0);
-  results.J.assign(cells, 0);
-  results.rotation.assign(cells, 0);
+Measurer::Measurer(const Model& model) : model_(model), elements_(make_elements(model)) {}
+Measurer::~Measurer() = default;
+
+ElementResults Measurer::measure(const State& state, const ElementRequest& request) const {
+  const Numbering& numbering = elements_->numbering();
+  ElementResults results = empty_results(request, model_.mesh->kinds.size());
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
+  tbb::task_arena arena(std::min(model_.settings.threads, static_cast<int>(allowed)));
   arena.execute([&] {
-    const std::vector<ElementPoints> points = elements->points(to_vector(numbering, state.displacement));
+    const std::vector<ElementPoints> points = elements_->points(to_vector(numbering, state.displacement));
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t e) {
-      const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
+      const Region& region = model_.regions[static_cast<std::size_t>(numbering.region_of[e])];
       const std::span<const Vec3> places(points[e].place, static_cast<std::size_t>(points[e].count));
-      const auto law = law_of_points(model, region, numbering.elements[e], places);
-      measure_element(points[e], *law, static_cast<std::size_t>(numbering.elements[e]), results);
+      const auto law = law_of_points(model_, region, numbering.elements[e], places);
+      measure_element(points[e], *law, static_cast<std::size_t>(numbering.elements[e]), request, results);
     });
   });
   return results;
+}
+
+ElementResults element_results(const Model& model, const State& state, const ElementRequest& request) {
+  return Measurer(model).measure(state, request);
 }
 
 std::vector<double> recover_at_nodes(const Model& model, const std::vector<double>& values, int components) {

@@ -25,6 +25,11 @@ Vec3 centre(const Mesh& mesh, int cell) {
 
 std::string place(const Vec3& x) { return fmt::format("({:g} {:g} {:g})", x[0], x[1], x[2]); }
 
+void check_positive(const char* what, double value, bool zero_allowed) {
+  if (!std::isfinite(value) || value < 0 || (!zero_allowed && value == 0))
+    throw Error(fmt::format("{} = {} is not {}", what, value, zero_allowed ? ">= 0" : "> 0"));
+}
+
 void check_region(const Model& model, const Region& region, CellKind& kind, bool& known) {
   const Mesh& mesh = *model.mesh;
   if (!region.law) throw Error(fmt::format("region '{}' has no material law", region.name));
@@ -67,7 +72,13 @@ void check_regions(const Model& model) {
       other = &region;
     }
   }
-  if (!known) throw Error("no region has an element: nothing to simulate");
+  for (const PointMass& point : model.point_masses) {
+    if (point.node < 0 || point.node >= mesh.point_count())
+      throw Error(fmt::format("a point mass names node {}, but the mesh has nodes 0 to {}", point.node,
+                              mesh.point_count() - 1));
+    check_positive("a point mass", point.mass, false);
+  }
+  if (!known && model.point_masses.empty()) throw Error("no region has an element: nothing to simulate");
   int lost = 0, first = -1;
   for (int e = 0; e < mesh.cell_count(); ++e)
     if (mesh.kinds[static_cast<std::size_t>(e)] == kind && !owner[static_cast<std::size_t>(e)] && lost++ == 0)
@@ -176,11 +187,6 @@ void check_shapes(const Model& model) {
                     bad, worst, place(centre(mesh, worst)), smallest, powers[mesh_dimension], hints[mesh_dimension]));
 }
 
-void check_positive(const char* what, double value, bool zero_allowed) {
-  if (!std::isfinite(value) || value < 0 || (!zero_allowed && value == 0))
-    throw Error(fmt::format("{} = {} is not {}", what, value, zero_allowed ? ">= 0" : "> 0"));
-}
-
 void check_integrator(const Settings& s) {
   check_positive("beta", s.newmark_beta, false);
   check_positive("gamma", s.newmark_gamma, true);
@@ -255,6 +261,18 @@ void check_body_force(const Mesh& mesh, const BodyForce& force) {
     throw Error(fmt::format("body force '{}' is not finite: {}", force.name, place(force.value)));
 }
 
+void check_spring(const Mesh& mesh, const Spring& spring) {
+  for (const int node : {spring.first, spring.second})
+    if (node >= mesh.point_count() || (node < 0 && node == spring.first))
+      throw Error(fmt::format("spring '{}' names node {}, but the mesh has nodes 0 to {}", spring.name, node,
+                              mesh.point_count() - 1));
+  if (spring.first == spring.second) throw Error(fmt::format("spring '{}' has two ends at one node", spring.name));
+  check_positive(("stiffness of spring '" + spring.name + "'").c_str(), spring.stiffness, true);
+  check_positive(("damping of spring '" + spring.name + "'").c_str(), spring.damping, true);
+  check_positive(("rest length of spring '" + spring.name + "'").c_str(), spring.rest, true);
+  if (!spring.point.allFinite()) throw Error(fmt::format("spring '{}' has no finite end", spring.name));
+}
+
 void check_initial(const Model& model, const char* what, const Points& values) {
   if (values.rows() == 0) return;
   if (values.rows() != model.mesh->points.rows())
@@ -273,11 +291,11 @@ void check_step(const Model& model, const Step& step) {
     check_nodes(*model.mesh, "force", f.name, f.nodes, f.values, static_cast<bool>(f.function));
   for (const FaceLoad& load : step.face_loads) check_face_load(model, load);
   for (const BodyForce& force : step.body_forces) check_body_force(*model.mesh, force);
-  if (!step.slides.empty())
-    throw Error(
-        fmt::format("'{}' slides in an oblique plane, which is not available yet: turn the scene so that the "
-                    "normal lies along an axis",
-                    step.slides.front().name));
+  for (const Slide& slide : step.slides) {
+    check_nodes(*model.mesh, "plane", slide.name, slide.nodes, {slide.normal}, false);
+    if (!(slide.normal.norm() > 0)) throw Error(fmt::format("the normal of '{}' has no direction", slide.name));
+  }
+  for (const Spring& spring : step.springs) check_spring(*model.mesh, spring);
 }
 
 }  // namespace

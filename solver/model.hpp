@@ -140,6 +140,8 @@ struct Step {
   double dt = 0.05;  ///< time, > 0
   int count = 100;   ///< number of time steps
   Vec3 gravity = Vec3(0, 0, -9.81);
+  VectorFunction gravity_function = {};  ///< if set, instead of `gravity`; taken at the nodes
+  bool gravity_steady = false;           ///< it does not depend on t: it ramps in statics as a constant does
   std::vector<Prescribed> prescribed;
   std::vector<NodalForce> forces;
   std::vector<FaceLoad> face_loads;
@@ -224,14 +226,26 @@ struct State {
   Energies energies;
 };
 
+/// Which parts of ElementResults are computed; the others stay empty.
+struct ElementRequest {
+  bool law = true;       ///< cauchy, strain, energy_density
+  bool J = true;         ///< J
+  bool rotation = true;  ///< rotation
+  bool tensors = false;  ///< deformation_gradient, first_piola, second_piola, green_lagrange
+};
+
 /// What the equations gave at the elements of one state; one entry per mesh cell (zero for cells without unknowns).
-/// Means over the quadrature points. 6 components: xx yy zz xy yz xz.
+/// Means over the quadrature points. 6 components: xx yy zz xy yz xz; 9: xx xy xz yx yy yz zx zy zz.
 struct ElementResults {
   std::vector<double> cauchy;          ///< #cells x 6
   std::vector<double> strain;          ///< #cells x 6; the strain of the law (corotated: U - I, small: sym grad u)
   std::vector<double> energy_density;  ///< #cells, per reference volume
   std::vector<double> J;               ///< #cells, smallest det F of the element
   std::vector<double> rotation;        ///< #cells, angle of the polar rotation in degrees, largest of the element
+  std::vector<double> deformation_gradient;  ///< #cells x 9, F
+  std::vector<double> first_piola;           ///< #cells x 9, P = dW/dF
+  std::vector<double> second_piola;          ///< #cells x 6, F^-1 P
+  std::vector<double> green_lagrange;        ///< #cells x 6, (F^T F - I)/2
 };
 
 /// The check after every run, part of the answer (scene-language, section 4).
@@ -289,8 +303,23 @@ using Observer = std::function<bool(const State&)>;
 /// Solves all steps. Throws Error only for a model that check() refuses.
 Outcome solve(const Model& model, const Observer& observer);
 
-/// Stresses and strains of a state.
-ElementResults element_results(const Model& model, const State& state);
+class Elements;  // solver/elements/assembly.hpp
+
+/// Measures states of one model, which must outlive it; the elements are prepared once.
+class Measurer {
+ public:
+  explicit Measurer(const Model& model);
+  ~Measurer();
+  /// Stresses and strains of a state, as far as they are asked for.
+  ElementResults measure(const State& state, const ElementRequest& request) const;
+
+ private:
+  const Model& model_;
+  std::unique_ptr<Elements> elements_;
+};
+
+/// The same for a single state.
+ElementResults element_results(const Model& model, const State& state, const ElementRequest& request = {});
 
 /// A field at cells recovered at the nodes: mean over the elements of each region around a node, weighted by volume;
 /// at a node between regions the mean of all. values: #cells x components -> #points x components.

@@ -107,10 +107,24 @@ void Newton::look(const Vector& u, const ScaledLoads& loads) {
   tangent_current_ = false;
 }
 
-void Newton::stiffness(const Vector& u, BlockMatrix& K) {
+void Newton::stiffness(const Vector& u, const ScaledLoads& loads, BlockMatrix& K) {
   const Stopwatch watch(seconds_assembly_);
   Forces unused;
-  equations_.evaluate(u, {}, Want::definite_tangent, unused, &K);
+  equations_.evaluate(u, loads, Want::definite_tangent, unused, &K);
+}
+
+bool Newton::damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C) {
+  const double beta = model_.settings.damping_stiffness;
+  if (beta == 0 && !equations_.has_dampers()) return false;
+  if (beta > 0) {
+    stiffness(u, loads, C);
+    for (double& value : C.values) value *= beta;
+  } else {
+    C.set_zero();
+  }
+  for (const ActingLoads& acting : loads)
+    if (!acting.leaving) add_dampers(acting.set->springs, equations_.positions(), u, C);
+  return true;
 }
 
 Vector Newton::residual(const Increment& increment) const {
@@ -118,6 +132,12 @@ Vector Newton::residual(const Increment& increment) const {
   Vector residual = motion.force_share * (forces_.external - forces_.internal - forces_.damping) -
                     motion.inertia_share * forces_.inertia;
   if (increment.offset.size() > 0) residual -= increment.offset;
+  return residual;
+}
+
+Vector Newton::free_residual(const Increment& increment) const {
+  Vector residual = this->residual(increment);
+  if (increment.slides) increment.slides->project(residual);
   return residual;
 }
 
@@ -129,10 +149,10 @@ LinearStatus Newton::factor(const Increment& increment) {
     // Divided by force_share, so that the tangent is there as it is.
     const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
     add(effective_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
-    if (increment.damping_matrix)
-      add(effective_, motion.velocity_factor * settings.damping_stiffness, *increment.damping_matrix);
+    if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
   }
   if (rigid_free_) shift_diagonal(effective_);
+  if (increment.slides) increment.slides->project(effective_);
   return linear_->factor(effective_, increment.fixed);
 }
 
@@ -144,6 +164,7 @@ LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vect
   const LinearMap whole = [&](const Vector& x, Vector& y) {
     multiply(effective_, x, y);
     multiply(*followers_, x, extra);
+    if (increment.slides) increment.slides->project(extra);
     y += extra;
   };
   const LinearStatus status = solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
@@ -151,6 +172,7 @@ LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vect
   // Far from the symmetric part, for instance where a pressure blows a thin wall up, only a factorisation of all helps.
   BlockMatrix all = effective_;
   add(all, 1, *followers_);
+  if (increment.slides) increment.slides->project(all);
   if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads);
   const LinearStatus factored = unsymmetric_->factor(all, increment.fixed);
   return factored == LinearStatus::done ? unsymmetric_->solve(right, tolerance, step) : factored;
@@ -169,6 +191,7 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
       right -= product;
     }
   }
+  if (increment.slides) increment.slides->project(right);
   ++solves_;
   return solve(increment, right, step);
 }
@@ -206,7 +229,9 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
     // The last factorisation of the exact tangent may be of a state far from this one.
     evaluate(increment, result.u, want_, true);
     const Stopwatch watch(seconds_linear_);
-    indefinite_ = linear_->factor(tangent_, increment.fixed) == LinearStatus::not_positive_definite;
+    effective_.values = tangent_.values;
+    if (increment.slides) increment.slides->project(effective_);
+    indefinite_ = linear_->factor(effective_, increment.fixed) == LinearStatus::not_positive_definite;
   }
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }
@@ -238,7 +263,7 @@ IncrementResult Newton::begin(const Increment& increment, const Vector& jump) {
   // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
   equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
                              increment.damping_matrix, forces_);
-  note_residual(increment, residual(increment), result);
+  note_residual(increment, free_residual(increment), result);
   return result;
 }
 
@@ -252,7 +277,7 @@ IncrementResult Newton::run(const Increment& increment) {
   Vector& u = result.u;
   if (!std::isfinite(result.residuals.back())) return result.stop = Stop::diverged, result;
   if (!moved && limit > 1 && accepted(increment, result)) return result.stop = verdict(increment, result), result;
-  Vector residual = this->residual(increment);
+  Vector residual = free_residual(increment);
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);
     ++iterations_;
@@ -274,7 +299,7 @@ IncrementResult Newton::run(const Increment& increment) {
       evaluate(increment, u, want_, false);
     }
     last_step_ = share == 1 && !definite_taken_ ? step.cwiseAbs().maxCoeff() : std::numeric_limits<double>::infinity();
-    residual = this->residual(increment);
+    residual = free_residual(increment);
     note_residual(increment, residual, result);
     if (accepted(increment, result)) return result.stop = verdict(increment, result), result;
     if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
@@ -284,14 +309,18 @@ IncrementResult Newton::run(const Increment& increment) {
   return result;
 }
 
-Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed) {
+Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads,
+                                    const Supports& supports) {
   prepare(u, loads);
-  equations_.evaluate_motion(v, Vector::Zero(u.size()), &tangent_, forces_);
+  BlockMatrix C(tangent_.pattern);
+  equations_.evaluate_motion(v, Vector::Zero(u.size()), damping(u, loads, C) ? &C : nullptr, forces_);
   BlockMatrix mass(tangent_.pattern);
   add(mass, 1, equations_.mass());
   const auto solver = make_conjugate_gradient(Preconditioner::jacobi);
-  Vector a = Vector::Zero(u.size());
-  if (solver->factor(mass, fixed) == LinearStatus::done) solver->solve(forces_.residual(), 1e-13, a);
+  Vector a = Vector::Zero(u.size()), force = forces_.residual();
+  supports.slides.project(mass);
+  supports.slides.project(force);
+  if (solver->factor(mass, supports.fixed) == LinearStatus::done) solver->solve(force, 1e-13, a);
   forces_.inertia.setZero();
   multiply(equations_.mass(), a, forces_.inertia);
   return a;

@@ -13,8 +13,9 @@ struct Increment {
   Vector target;  ///< displacement of fixed unknowns at the end
   ScaledLoads loads;
   Kinematics motion;
-  const BlockMatrix* damping_matrix = nullptr;  ///< K at the start of the step, for Rayleigh damping; null without
+  const BlockMatrix* damping_matrix = nullptr;  ///< of the start of the step, beside alpha M; null without
   Vector offset = {};  ///< residual to end with: minus what the start of the step puts into the balance; empty: zero
+  const Slides* slides = nullptr;  ///< nodes in planes; null: none
 };
 
 /// How it went.
@@ -51,8 +52,10 @@ class Newton {
   /// Forces at u alone.
   void look(const Vector& u, const ScaledLoads& loads);
   void forget() { tangent_current_ = false; }
-  /// The semidefinite stiffness at u, for Rayleigh damping: an indefinite one would feed energy in.
-  void stiffness(const Vector& u, BlockMatrix& K);
+  /// The semidefinite stiffness of elements and springs at u.
+  void stiffness(const Vector& u, const ScaledLoads& loads, BlockMatrix& K);
+  /// C = beta K + dampers at u, with that stiffness: an indefinite one would feed energy in. False if there is none.
+  bool damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C);
   /// Adds inertia and damping to the forces, or none.
   void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix);
   void rest();
@@ -60,7 +63,7 @@ class Newton {
   /// survive that, or in statics a collapsed one.
   Stop state_verdict() const;
   /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
-  Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Mask& fixed);
+  Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Supports& supports);
   /// What is missing in the balance of an increment with the forces that were last evaluated.
   Vector residual(const Increment& increment) const;
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
@@ -74,6 +77,7 @@ class Newton {
   LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);
+  Vector free_residual(const Increment& increment) const;
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
   LinearStatus attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step);
   IncrementResult begin(const Increment& increment, const Vector& jump);

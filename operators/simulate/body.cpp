@@ -47,6 +47,7 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
 }
 
 FaceTable::FaceTable(const Body& body) {
+  if (dimension(body.kind) != 3) return;  // particles have no faces
   std::vector<Entry> all;
   all.reserve(4 * body.elements.size());
   for (const int element : body.elements)

@@ -45,8 +45,12 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   Body& body = simulation.body;
   fe::Model& model = simulation.model;
   model.mesh = body.mesh;
-  model.regions = build_regions(all_of(object, "region"), body, reporter);
-  body.small_strain = std::all_of(model.regions.begin(), model.regions.end(),
+  if (body.kind == CellKind::vertex)
+    model.point_masses = build_masses(all_of(object, "region"), body, reporter);
+  else
+    model.regions = build_regions(all_of(object, "region"), body, reporter);
+  body.small_strain = !model.regions.empty() &&
+                      std::all_of(model.regions.begin(), model.regions.end(),
                                   [](const fe::Region& region) { return region.law && region.law->small_strain(); });
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);

@@ -26,7 +26,12 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads);
 /// The regions of a body: each element belongs to the last region that claims it; a single region extends to the whole
 /// body; with several, elements that none claims are an Error that counts and locates them. Overlaps and regions
 /// without elements are warned of.
+/// A body of particles has point masses instead; see build_masses.
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
+
+/// The masses of the particles of a body: the pointMass of the region that each belongs to.
+std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& records, const Body& body,
+                                        Reporter& reporter);
 
 /// Adds the conditions under `root` to the model: initial states, and the others to the steps they act in: forStep of
 /// the tag, else of the constraint around it, else every step. A name that is no step is warned of.

@@ -115,6 +115,7 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record* material = first_of(*records[i], "material");
     if (material == nullptr) refuse(*records[i], "has no material");
+    if (material->tag() == "pointMass") refuse(*material, "is for a body of particles; elements need a material law");
     fe::Region region{.name = region_name(*records[i], i),
                       .law = make<std::shared_ptr<const fe::Law>>(*material),
                       .density = density(*records[i]),
@@ -122,6 +123,23 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }
   return regions;
+}
+
+std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& records, const Body& body,
+                                        Reporter& reporter) {
+  if (records.empty()) throw Error("the object has no region with a mass");
+  const Owners owners(records, body, reporter);
+  std::vector<fe::PointMass> masses;
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Record* material = first_of(*records[i], "material");
+    if (material == nullptr) refuse(*records[i], "has no pointMass");
+    if (const Record* mass = first_of(*records[i], "mass"))
+      refuse(*mass, "has no meaning for particles; their pointMass says it");
+    if (material->tag() != "pointMass") refuse(*material, "is no law for particles: they have a pointMass");
+    for (const int element : owners.elements(i))
+      masses.push_back({body.mesh->cell(element)[0], make<double>(*material)});
+  }
+  return masses;
 }
 
 }  // namespace msml::simulation

@@ -69,8 +69,10 @@ std::string balance_text(const fe::Check& check, bool dynamic) {
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
-    steps.push_back(
-        {{"name", step.name}, {"dt", number(step.dt)}, {"iterations", step.count}, {"gravity", vector(step.gravity)}});
+    steps.push_back({{"name", step.name},
+                     {"dt", number(step.dt)},
+                     {"iterations", step.count},
+                     {"gravity", step.gravity_function ? Json("varies") : vector(step.gravity)}});
   return steps;
 }
 

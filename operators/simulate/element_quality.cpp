@@ -37,6 +37,7 @@ Shape tetrahedron_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
 WorstShape worst_shape(const Body& body) {
   WorstShape worst;
   for (const int id : body.elements) {
+    if (dimension(body.kind) != 3) break;
     const int* nodes = body.mesh->cell(id);
     const auto corner = [&](int i) -> Vec3 { return body.mesh->points.row(nodes[i]).transpose(); };
     const Shape shape = tetrahedron_shape(corner(0), corner(1), corner(2), corner(3));

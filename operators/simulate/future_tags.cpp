@@ -55,7 +55,6 @@ void add_meshes(std::vector<Description>& tags) {
   tags.push_back(future("quadraticTriangle", "mesh", "Quadratic triangles in the plane.", solids, attributes));
   tags.push_back(future("linearLine", "mesh", "Linear elements on a line.", solids, attributes));
   tags.push_back(future("quadraticLine", "mesh", "Quadratic elements on a line.", solids, attributes));
-  tags.push_back(future("particles", "mesh", "Nodes alone.", solids, attributes));
 }
 
 void add_materials(std::vector<Description>& tags) {
@@ -77,13 +76,6 @@ void add_materials(std::vector<Description>& tags) {
 }
 
 void add_msml_constraints(std::vector<Description>& tags) {
-  tags.push_back(future("springMeshToFixed", "constraint", "Springs from points of the mesh to points in space.",
-                        "hold the points with fixedConstraint or displacementConstraint",
-                        {{"stiffness", Type::number, "force/length"},
-                         {"rayleighStiffnes", Type::number, "damping (spelled so)"},
-                         {"fixedPoints", Type::numbers, "points in space"},
-                         {"movingPoints", Type::numbers, "points of the mesh"},
-                         {"forStep", Type::text, "step"}}));
   tags.push_back(future("supportingMesh", "constraint", "A second mesh embedded in the main one.",
                         "give its elements a region of their own",
                         {{"youngModulus", Type::number, "stress"},
@@ -107,29 +99,9 @@ void add_msml_constraints(std::vector<Description>& tags) {
 
 void add_constraints(std::vector<Description>& tags) {
   const Attribute indices{"indices", Type::index_set, "where it acts"}, step{"forStep", Type::text, "step"};
-  const char* held = "hold nodes with fixedConstraint or displacementConstraint";
-  tags.push_back(future("spring", "constraint", "A spring between two nodes.", held,
-                        {{"first", Type::integer, "node"},
-                         {"second", Type::integer, "node"},
-                         {"stiffness", Type::number, "force/length"},
-                         {"damping", Type::number, "force time/length"},
-                         {"restLength", Type::number, "length"},
-                         step}));
-  tags.push_back(
-      future("springToPoint", "constraint", "Springs from nodes to a point in space.", held,
-             {indices, {"point", Type::numbers, "point"}, {"stiffness", Type::number, "force/length"}, step}));
   for (const char* tag : {"source", "fixedValue", "flux"})
     tags.push_back(future(tag, "constraint", "Of a scalar problem.", "there are no scalar problems",
                           {indices, {"value", Type::number, "its value"}, step}));
-}
-
-void add_outputs(std::vector<Description>& tags) {
-  const char* instead = "take the fields from a result";
-  const Attribute id{"id", Type::text, "start of the file name"};
-  tags.push_back(future(
-      "probe", "output", "A field at a place over time, as CSV.", instead,
-      {id, {"point", Type::numbers, "place"}, {"indices", Type::index_set, "nodes"}, {"field", Type::text, "which"}}));
-  tags.push_back(future("energies", "output", "Energies over time, as CSV.", instead, {id}));
 }
 
 }  // namespace
@@ -140,7 +112,6 @@ std::vector<Description> future_tags() {
   add_materials(tags);
   add_msml_constraints(tags);
   add_constraints(tags);
-  add_outputs(tags);
   return tags;
 }
 

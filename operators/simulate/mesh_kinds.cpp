@@ -36,11 +36,38 @@ Factory<MeshChoice> tetrahedra(const char* name, CellKind kind, const std::strin
   return tag;
 }
 
+/// The points of a mesh, each with a cell of its own.
+std::shared_ptr<const Mesh> with_vertices(const Points& points) {
+  auto mesh = std::make_shared<Mesh>();
+  mesh->points = points;
+  for (int n = 0; n < mesh->point_count(); ++n) mesh->add_cell(CellKind::vertex, &n);
+  return mesh;
+}
+
+Factory<MeshChoice> particles() {
+  Factory<MeshChoice> tag("particles", "mesh", "Points with masses and no elements, for springs to hold.");
+  const auto mesh = tag.input<Mesh>("mesh", "its points are the particles; its cells do not count", true);
+  const auto points = tag.parameter<std::vector<double>>(
+      "points",
+      {.unit = "length", .optional = true, .multiple_of = 3, .doc = "the particles, x y z each, instead of a mesh"});
+  tag.note("Their regions hold a pointMass instead of a law and a density.");
+  tag.build([=](const Record& record) {
+    if (record.has(mesh) == record.has(points)) refuse(record, "needs either mesh or points");
+    if (record.has(mesh)) return MeshChoice{with_vertices(record[mesh].points), CellKind::vertex};
+    const std::vector<double>& list = record[points];
+    return MeshChoice{
+        with_vertices(Eigen::Map<const Points>(list.data(), static_cast<Eigen::Index>(list.size() / 3), 3)),
+        CellKind::vertex};
+  });
+  return tag;
+}
+
 }  // namespace
 
 std::vector<Factory<MeshChoice>> mesh_kinds() {
   return {tetrahedra("linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."),
-          tetrahedra("quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points.")};
+          tetrahedra("quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points."),
+          particles()};
 }
 
 Factory<double> mass() {
@@ -48,6 +75,14 @@ Factory<double> mass() {
   const auto density = tag.parameter(
       "massDensity", {.unit = "mass/volume", .range = positive(), .fallback = 1.0, .doc = "per reference volume"});
   tag.build([=](const Record& record) { return record[density]; });
+  return tag;
+}
+
+Factory<double> point_mass() {
+  Factory<double> tag("pointMass", "material", "What particles are made of: a mass each, and no law.");
+  const auto mass =
+      tag.parameter("mass", {.unit = "mass", .range = positive(), .doc = "of each particle of the region"});
+  tag.build([=](const Record& record) { return record[mass]; });
   return tag;
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tags `displacement` and `result`: what is written of a simulation.
+// The tags of what is written of a simulation.
 #include <algorithm>
 
+#include "operators/simulate/fields.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/settings.hpp"
 
@@ -67,14 +68,70 @@ Factory<OutputRequest> result() {
   Keys keys = add_common(tag);
   keys.fields = tag.parameter<Words>(
       "fields", {.fallback = usual_fields, .choices = field_names(), .doc = "what is written besides displacement"});
-  tag.note(
-      "Stresses are Cauchy's; tensors have 6 components xx yy zz xy yz xz. stress, vonMises, strain, energyDensity, "
-      "J and region are given at elements; with _nodal: recovered at nodes.");
+  tag.note("Tensors have 6 components xx yy zz xy yz xz, or 9: xx xy xz yx yy yz zx zy zz.");
+  for (const FieldFacts& facts : all_fields())
+    tag.note(fmt::format("{} ({}, at {}): {}", facts.name, counted(facts.components, "number"),
+                         facts.nodal ? "nodes" : "elements", facts.doc));
   tag.build([=](const Record& record) {
     OutputRequest request{
         .id = file_stem(record, keys.id), .fields = distinct(record[keys.fields]), .where = record.where};
     if (record.has(keys.every)) request.every = static_cast<int>(record[keys.every]);
     return request;
+  });
+  return tag;
+}
+
+Key<Integer> add_every(Factory<OutputRequest>& tag) {
+  return tag.parameter<Integer>(
+      "every",
+      {.range = closed(1, 1e9), .fallback = 1, .doc = "states 0, every, 2 every, … and the last; load steps count"});
+}
+
+Factory<OutputRequest> probe() {
+  Factory<OutputRequest> tag("probe", "output", "A field at a place or at nodes over time, as a CSV file.");
+  const auto id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
+  const auto point = tag.parameter<std::vector<double>>(
+      "point", {.unit = "length",
+                .optional = true,
+                .counts = {3},
+                .doc = "the place in the reference configuration, inside the body: the field is interpolated there"});
+  tag.input<IndexSet>("indices", {.optional = true, .doc = "nodes instead of a point: a column for each"});
+  const auto field = tag.parameter<std::string>(
+      "field", {.fallback = "displacement", .choices = field_names(), .doc = "what is written"});
+  const auto every = add_every(tag);
+  tag.produces(Type::file);
+  tag.note("File: ID.csv, a line of names, then a line per state: the time and the components of the field.");
+  tag.note("At a point, a field given at elements has the value of the element that holds the point.");
+  tag.build([=](const Record& record) {
+    const bool nodes =
+        type(record.values[static_cast<std::size_t>(record.description->find("indices"))]) != Type::nothing;
+    if (record.has(point) == nodes) refuse(record, "needs either point or indices");
+    OutputRequest request{.id = file_stem(record, id),
+                          .every = static_cast<int>(record[every]),
+                          .fields = {record[field]},
+                          .where = record.where,
+                          .kind = OutputKind::probe,
+                          .record = &record};
+    if (!nodes) request.point = Vec3(record[point][0], record[point][1], record[point][2]);
+    return request;
+  });
+  return tag;
+}
+
+Factory<OutputRequest> energies() {
+  Factory<OutputRequest> tag("energies", "output", "Energies, work and momentum over time, as a CSV file.");
+  const auto id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
+  const auto every = add_every(tag);
+  tag.produces(Type::file);
+  tag.note(
+      "File: ID.csv with the columns time, elastic and kinetic energy, work of loads and moved supports, energy "
+      "dissipated by damping, momentum and angular momentum about the origin.");
+  tag.build([=](const Record& record) {
+    return OutputRequest{.id = file_stem(record, id),
+                         .every = static_cast<int>(record[every]),
+                         .fields = {},
+                         .where = record.where,
+                         .kind = OutputKind::energies};
   });
   return tag;
 }
@@ -85,13 +142,6 @@ bool OutputRequest::wants(const std::string& field) const {
   return std::find(fields.begin(), fields.end(), field) != fields.end();
 }
 
-const std::vector<std::string>& field_names() {
-  static const std::vector<std::string> names{
-      "displacement", "velocity",     "acceleration",  "stress", "vonMises", "stress_nodal", "vonMises_nodal",
-      "strain",       "strain_nodal", "energyDensity", "J",      "reaction", "region"};
-  return names;
-}
-
-std::vector<Factory<OutputRequest>> outputs() { return {displacement(), result()}; }
+std::vector<Factory<OutputRequest>> outputs() { return {displacement(), result(), probe(), energies()}; }
 
 }  // namespace msml::simulation

@@ -97,7 +97,8 @@ std::vector<int> select_elements(const Record& record, const Body& body) {
     const auto in = marked(set, body.mesh->point_count());
     std::copy_if(body.elements.begin(), body.elements.end(), std::back_inserter(elements), [&](int id) {
       const int* nodes = body.mesh->cell(id);
-      return std::all_of(nodes, nodes + 4, [&](int node) { return in[static_cast<std::size_t>(node)]; });
+      return std::all_of(nodes, nodes + corner_count(body.kind),
+                         [&](int node) { return in[static_cast<std::size_t>(node)]; });
     });
   }
   return elements;

@@ -106,8 +106,9 @@ void SeriesWriter::remove_older_states() const {
   }
 }
 
-Series SeriesWriter::series() const {
-  return {.pattern = request_.id + "_*.vtu", .folder = folder_, .times = times_, .files = files_, .last = last_};
+Value SeriesWriter::value() const {
+  return std::make_shared<const Series>(
+      Series{.pattern = request_.id + "_*.vtu", .folder = folder_, .times = times_, .files = files_, .last = last_});
 }
 
 }  // namespace msml::simulation

@@ -6,27 +6,23 @@
 #include <vector>
 
 #include "msml/core/value.hpp"
-#include "operators/simulate/build_model.hpp"
-#include "operators/simulate/state_fields.hpp"
+#include "operators/simulate/output_writer.hpp"
 
 namespace msml::simulation {
 
-class SeriesWriter {
+class SeriesWriter final : public OutputWriter {
  public:
   /// Writes nothing yet. `simulation` must outlive the writer.
   SeriesWriter(const Simulation& simulation, const OutputRequest& request, std::filesystem::path folder);
 
-  /// Whether the request asks for this state, whatever comes after it. Of a static run the states at the start and at
-  /// the end of each step count.
-  bool wants(const fe::State& state) const;
+  /// Of a static run the states at the start and at the end of each step count.
+  bool wants(const fe::State& state) const override;
   /// Writes ID_NNNN.vtu whole or not at all, and now and then ID.pvd.
-  void write(const fe::State& state, StateFields& fields);
+  void write(const fe::State& state, StateFields& fields) override;
   /// Writes the state if it is not the one written last, then ID.pvd, and removes states of an earlier, longer run.
-  void finish(const fe::State& last, StateFields& fields);
-  /// What was written.
-  Series series() const;
-  const OutputRequest& request() const { return request_; }
-  const std::filesystem::path& folder() const { return folder_; }
+  void finish(const fe::State& last, StateFields& fields) override;
+  /// The Series that was written.
+  Value value() const override;
 
  private:
   void write_collection();

@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,8 @@ std::vector<Factory<MeshChoice>> mesh_kinds();
 
 /// The tag `mass`: mass per reference volume.
 Factory<double> mass();
+/// The tag `pointMass`: the mass of each particle of a region.
+Factory<double> point_mass();
 
 /// Settings of the solver; what is accepted for old scenes is noted. `threads` is used where the scene says nothing.
 using SettingsBuilder = std::function<fe::Settings(Reporter&, int threads)>;
@@ -30,19 +33,22 @@ Factory<SettingsBuilder> solver();
 /// A step without conditions.
 Factory<fe::Step> step();
 
+/// series: the deformed mesh with fields; probe: a field at a place; energies: sums over the body.
+enum class OutputKind { series, probe, energies };
+
 /// What is written of a simulation.
 struct OutputRequest {
   std::string id;                   ///< start of the file names
   int every = 1;                    ///< states 0, every, 2 every, … and the last
-  std::vector<std::string> fields;  ///< in the order written; always with "displacement"
+  std::vector<std::string> fields;  ///< in the order written; of a series always with "displacement"; of a probe one
   Location where;
+  OutputKind kind = OutputKind::series;
+  std::optional<Vec3> point;       ///< of a probe: a place in the reference configuration; else its indices count
+  const Record* record = nullptr;  ///< of a probe: its tag
   bool wants(const std::string& field) const;
 };
-/// `displacement` (as in MSML) and `result` (any fields).
+/// `displacement` (as in MSML), `result` (any fields), `probe` and `energies`.
 std::vector<Factory<OutputRequest>> outputs();
-
-/// Names that `fields` of a result may list.
-const std::vector<std::string>& field_names();
 
 /// Tags of the language that parse but are refused for now.
 std::vector<Description> future_tags();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/settings.hpp"
 
@@ -192,17 +193,24 @@ Factory<fe::Step> step() {
   const auto dt = tag.parameter("dt", {.unit = "time", .range = positive(), .fallback = 0.05, .doc = "the time step"});
   const auto iterations = tag.parameter<Integer>(
       "iterations", {.range = closed(1, 1e9), .fallback = 100, .doc = "number of time steps; no meaning in static"});
-  const auto gravity = tag.parameter<std::vector<double>>(
-      "gravity", {.unit = "length/time^2",
-                  .fallback = std::vector<double>{0, 0, -9.81},
-                  .counts = {3},
-                  .doc = "acceleration on all masses; a step that says nothing has earth's, in metres and seconds"});
+  const auto gravity =
+      tag.parameter<Formulas>("gravity", {.unit = "length/time^2",
+                                          .fallback = Formulas{0.0, 0.0, -9.81},
+                                          .counts = {3},
+                                          .doc = "acceleration on all masses, 3 numbers or expressions; a step that "
+                                                 "says nothing has earth's, in metres and seconds"});
   tag.build([=](const Record& record) {
-    const std::vector<double>& g = record[gravity];
-    return fe::Step{.name = record.has(name) ? record[name] : record.id,
-                    .dt = record[dt],
-                    .count = static_cast<int>(record[iterations]),
-                    .gravity = Vec3(g.at(0), g.at(1), g.at(2))};
+    const std::vector<Function> g = functions(record, gravity);
+    fe::Step made{.name = record.has(name) ? record[name] : record.id,
+                  .dt = record[dt],
+                  .count = static_cast<int>(record[iterations]),
+                  .gravity = Vec3::Zero()};
+    made.gravity_steady = !g[0].of_time() && !g[1].of_time() && !g[2].of_time();
+    if (g[0].constant() && g[1].constant() && g[2].constant())
+      made.gravity = vector_of(g)(Vec3::Zero(), 0);
+    else
+      made.gravity_function = vector_of(g);
+    return made;
   });
   return tag;
 }

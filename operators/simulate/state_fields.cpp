@@ -2,6 +2,7 @@
 // Fields of one state, made on demand.
 #include "operators/simulate/state_fields.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "msml/core/error.hpp"
@@ -24,6 +25,26 @@ std::vector<double> von_mises(const std::vector<double>& stress) {
   return result;
 }
 
+std::vector<double> principal_values(const std::vector<double>& stress) {
+  std::vector<double> result;
+  result.reserve(stress.size() / 2);
+  for (std::size_t i = 0; i + 5 < stress.size(); i += 6) {
+    const double* s = stress.data() + i;
+    Mat3 tensor;
+    tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(tensor, Eigen::EigenvaluesOnly);
+    for (int k = 2; k >= 0; --k) result.push_back(solver.eigenvalues()[k]);
+  }
+  return result;
+}
+
+std::vector<double> pressure_of(const std::vector<double>& stress) {
+  std::vector<double> result(stress.size() / 6);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    result[i] = -(stress[6 * i] + stress[6 * i + 1] + stress[6 * i + 2]) / 3;
+  return result;
+}
+
 Points StateFields::displacement() const {
   Points moved = Points::Zero(body_.mesh->points.rows(), 3);
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
@@ -33,43 +54,63 @@ Points StateFields::displacement() const {
 
 Points StateFields::positions() const { return body_.mesh->points + displacement(); }
 
-const fe::ElementResults& StateFields::elements() {
-  if (elements_) return *elements_;
-  elements_ = fe::element_results(model_, state_);
+const fe::ElementResults& StateFields::law() {
+  if (!law_) law_ = measurer_.measure(state_, {.law = true, .J = false, .rotation = false});
+  return *law_;
+}
+
+const fe::ElementResults& StateFields::tensors() {
+  if (!tensors_) tensors_ = measurer_.measure(state_, {.law = false, .J = false, .rotation = false, .tensors = true});
+  return *tensors_;
+}
+
+std::vector<double> StateFields::J() const {
+  std::vector<double> J = measurer_.measure(state_, {.law = false, .J = true, .rotation = false}).J;
   // Cells without unknowns keep their volume.
   for (int c = 0; c < body_.mesh->cell_count(); ++c)
-    if (body_.mesh->kinds[static_cast<std::size_t>(c)] != body_.kind) elements_->J[static_cast<std::size_t>(c)] = 1;
-  return *elements_;
+    if (body_.mesh->kinds[static_cast<std::size_t>(c)] != body_.kind) J[static_cast<std::size_t>(c)] = 1;
+  return J;
 }
 
-std::optional<Field> StateFields::point_field(const std::string& name) {
-  if (name == "displacement") return Field{name, 3, rows(displacement())};
-  if (name == "velocity") return Field{name, 3, rows(state_.velocity)};
-  if (name == "acceleration") return Field{name, 3, rows(state_.acceleration)};
-  if (name == "reaction") return Field{name, 3, rows(state_.reaction)};
-  if (name == "stress_nodal") return Field{name, 6, fe::recover_at_nodes(model_, elements().cauchy, 6)};
-  if (name == "strain_nodal") return Field{name, 6, fe::recover_at_nodes(model_, elements().strain, 6)};
-  if (name == "vonMises_nodal") return Field{name, 1, von_mises(fe::recover_at_nodes(model_, elements().cauchy, 6))};
-  return std::nullopt;
+std::vector<double> StateFields::at_elements(const std::string& name) {
+  if (name == "stress") return law().cauchy;
+  if (name == "strain") return law().strain;
+  if (name == "energyDensity") return law().energy_density;
+  if (name == "vonMises") return von_mises(law().cauchy);
+  if (name == "principalStress") return principal_values(law().cauchy);
+  if (name == "pressure") return pressure_of(law().cauchy);
+  if (name == "firstPiola") return tensors().first_piola;
+  if (name == "secondPiola") return tensors().second_piola;
+  if (name == "greenLagrange") return tensors().green_lagrange;
+  if (name == "deformationGradient") return tensors().deformation_gradient;
+  if (name == "J") return J();
+  throw Error("no field '" + name + "'", {}, Failure::internal);
 }
 
-std::optional<Field> StateFields::cell_field(const std::string& name) {
-  if (name == "stress") return Field{name, 6, elements().cauchy};
-  if (name == "strain") return Field{name, 6, elements().strain};
-  if (name == "vonMises") return Field{name, 1, von_mises(elements().cauchy)};
-  if (name == "energyDensity") return Field{name, 1, elements().energy_density};
-  if (name == "J") return Field{name, 1, elements().J};
-  return std::nullopt;
+/// What is not linear in the stress is taken of the recovered one.
+std::vector<double> StateFields::recovered(const std::string& name) {
+  const auto stress = [&] { return fe::recover_at_nodes(model_, law().cauchy, 6); };
+  if (name == "vonMises") return von_mises(stress());
+  if (name == "principalStress") return principal_values(stress());
+  return fe::recover_at_nodes(model_, at_elements(name), facts_of(name).components);
+}
+
+std::vector<double> StateFields::nodal(const std::string& name) {
+  if (name == "displacement") return rows(displacement());
+  if (name == "velocity") return rows(state_.velocity);
+  if (name == "acceleration") return rows(state_.acceleration);
+  if (name == "reaction") return rows(state_.reaction);
+  return recovered(name.substr(0, name.size() - std::string("_nodal").size()));
+}
+
+Field StateFields::field(const std::string& name) {
+  const FieldFacts& facts = facts_of(name);
+  return {name, facts.components, facts.nodal ? nodal(name) : at_elements(name)};
 }
 
 void StateFields::add_to(Mesh& mesh, const std::string& name) {
   if (name == "region") return;
-  if (auto field = point_field(name))
-    mesh.point_fields.push_back(std::move(*field));
-  else if (auto cells = cell_field(name))
-    mesh.cell_fields.push_back(std::move(*cells));
-  else
-    throw Error("no field '" + name + "'", {}, Failure::internal);
+  (facts_of(name).nodal ? mesh.point_fields : mesh.cell_fields).push_back(field(name));
 }
 
 }  // namespace msml::simulation

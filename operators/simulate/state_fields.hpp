@@ -6,34 +6,45 @@
 #include <vector>
 
 #include "operators/simulate/body.hpp"
+#include "operators/simulate/fields.hpp"
 
 namespace msml::simulation {
 
 /// Fields of a state, each computed when first asked for.
 class StateFields {
  public:
-  StateFields(const fe::Model& model, const Body& body, const fe::State& state)
-      : model_(model), body_(body), state_(state) {}
+  StateFields(const fe::Model& model, const Body& body, const fe::Measurer& measurer, const fe::State& state)
+      : model_(model), body_(body), measurer_(measurer), state_(state) {}
 
   /// Points of the mesh in the state: X + u; points of no element stay.
   Points positions() const;
-  /// Adds a field to the points or cells of a mesh with the body's points and cells. `name` is one of field_names();
-  /// "region" adds nothing, since meshes carry it anyway.
+  /// A field by its name, one of field_names() but "region": values at all points or all cells of the body's mesh.
+  Field field(const std::string& name);
+  /// Adds a field to the points or cells of a mesh with the body's points and cells. "region" adds nothing, since
+  /// meshes carry it anyway.
   void add_to(Mesh& mesh, const std::string& name);
 
  private:
   Points displacement() const;
-  const fe::ElementResults& elements();
-  std::optional<Field> point_field(const std::string& name);
-  std::optional<Field> cell_field(const std::string& name);
+  const fe::ElementResults& law();
+  const fe::ElementResults& tensors();
+  std::vector<double> J() const;
+  std::vector<double> nodal(const std::string& name);
+  std::vector<double> at_elements(const std::string& name);
+  std::vector<double> recovered(const std::string& name);
 
   const fe::Model& model_;
   const Body& body_;
+  const fe::Measurer& measurer_;
   const fe::State& state_;
-  std::optional<fe::ElementResults> elements_;
+  std::optional<fe::ElementResults> law_, tensors_;
 };
 
-/// Von Mises stress sqrt(3/2 s:s), s the deviator, of `count` tensors of 6 components xx yy zz xy yz xz.
+/// Von Mises stress sqrt(3/2 s:s), s the deviator, of tensors of 6 components xx yy zz xy yz xz.
 std::vector<double> von_mises(const std::vector<double>& stress);
+/// Eigenvalues of such tensors, three each, the largest first.
+std::vector<double> principal_values(const std::vector<double>& stress);
+/// Minus a third of the trace of such tensors.
+std::vector<double> pressure_of(const std::vector<double>& stress);
 
 }  // namespace msml::simulation

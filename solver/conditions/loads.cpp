@@ -162,14 +162,28 @@ void drop_absent(const Numbering& numbering, Vector& force) {
     for (int c = numbering.components; c < 3; ++c) force[3 * node + c] = 0;
 }
 
+/// M g, g taken at the nodes.
+void add_gravity(const Step& step, const Numbering& numbering, const ScalarMatrix& mass, LoadSet& loads) {
+  const auto add = [g = step.gravity, at_place = step.gravity_function, numbers = &numbering, M = &mass](
+                       double t, Vector& force) {
+    Vector gravity(force.size()), weight;
+    for (int n = 0; n < numbers->nodes(); ++n)
+      gravity.segment<3>(3 * n) =
+          at_place ? at_place(numbers->mesh->points.row(numbers->node_of[static_cast<std::size_t>(n)]).transpose(), t)
+                   : g;
+    multiply(*M, gravity, weight);
+    force += weight;
+  };
+  add_load(loads, {}, step.gravity_function && !step.gravity_steady, add);
+}
+
 }  // namespace
 
 LoadSet make_loads(const Model& model, const Step& step, const Numbering& numbering, const ScalarMatrix& mass) {
   LoadSet loads;
-  Vector gravity(3 * numbering.nodes());
-  for (int n = 0; n < numbering.nodes(); ++n)
-    gravity.segment<3>(3 * n) = numbering.scalar ? Vec3::Zero() : step.gravity;
-  multiply(mass, gravity, loads.dead);
+  loads.dead = Vector::Zero(3 * numbering.nodes());
+  if (!numbering.scalar) add_gravity(step, numbering, mass, loads);
+  loads.springs = make_springs(step, numbering);
   for (const NodalForce& force : step.forces) add_nodal_force(model, force, numbering, loads);
   for (const FaceLoad& load : step.face_loads) add_face_load(model, load, numbering, loads);
   for (const BodyForce& force : step.body_forces) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "solver/conditions/springs.hpp"
 #include "solver/elements/assembly.hpp"
 
 namespace msml::fe {
@@ -23,7 +24,8 @@ struct FollowerFace {
 struct LoadSet {
   Vector dead;  ///< 3 per numbered node: what depends neither on the displacement nor on time
   std::vector<FollowerFace> followers;
-  std::vector<FaceLoad> sources;  ///< loads with a function or a factor, without faces
+  std::vector<FaceLoad> sources;    ///< loads with a function or a factor, without faces
+  std::vector<SpringLink> springs;  ///< they act in full, and are gone where the set leaves
   std::vector<std::function<void(double t, Vector& force)>> timed;  ///< each adds a dead load as it is at t
 };
 
@@ -35,7 +37,8 @@ struct ActingLoads {
 };
 
 /// `mass` is the matrix of the equations of motion: gravity is M g, so that a free body falls without deforming.
-/// Throws Error where a force acts on a node that belongs to no element.
+/// `numbering` and `mass` must outlive the result. Throws Error where a force acts on a node that belongs to no
+/// element.
 LoadSet make_loads(const Model& model, const Step& step, const Numbering& numbering, const ScalarMatrix& mass);
 
 /// force += the loads that do not depend on the displacement.

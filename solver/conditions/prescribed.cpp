@@ -26,7 +26,7 @@ Vector Supports::at(double share, double time) const {
 
 Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u) {
   const std::size_t size = static_cast<std::size_t>(3 * numbering.nodes());
-  Supports supports{Mask(size, 0), u, u, Mask(size, 0), {}, std::vector<int>(size, -1)};
+  Supports supports{Mask(size, 0), u, u, Mask(size, 0), {}, std::vector<int>(size, -1), {}};
   for (const Prescribed& condition : step.prescribed)
     for (std::size_t i = 0; i < condition.nodes.size(); ++i) {
       const int node = numbering.number_of[static_cast<std::size_t>(condition.nodes[i])];
@@ -55,6 +55,10 @@ Supports make_supports(const Step& step, const Numbering& numbering, const Vecto
       supports.ramped[k] = 0;
       supports.moved_by[k] = -1;
     }
+  Mask moves(size, 0);
+  for (std::size_t k = 0; k < size; ++k)
+    moves[k] = supports.fixed[k] && (supports.moved_by[k] >= 0 || supports.end[static_cast<Eigen::Index>(k)] != 0);
+  supports.slides = make_slides(step, numbering, supports.fixed, moves);
   return supports;
 }
 

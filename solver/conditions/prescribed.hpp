@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which unknowns a step fixes, and to what.
 #pragma once
+#include "solver/conditions/slides.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/linear/linear_system.hpp"
 
@@ -22,6 +23,7 @@ struct Supports {
   Mask ramped;                     ///< reached linearly over the step; the others at once
   std::vector<MovedNode> moved;    ///< nodes whose displacement is given as a function of time
   std::vector<int> moved_by = {};  ///< per unknown: which of `moved` gives it, -1 = none
+  Slides slides = {};
   /// Values at a share of the step in (0, 1] and the time there; entries of free unknowns are 0.
   Vector at(double share, double time) const;
 };

@@ -37,6 +37,8 @@ std::vector<int> connected_parts(const Model& model) {
         parent[static_cast<std::size_t>(std::max(one, two))] = std::min(one, two);
       }
     }
+  for (const PointMass& mass : model.point_masses)
+    if (parent[static_cast<std::size_t>(mass.node)] < 0) parent[static_cast<std::size_t>(mass.node)] = mass.node;
   for (std::size_t n = 0; n < parent.size(); ++n)
     if (parent[n] >= 0) parent[n] = root_of(static_cast<int>(n));
   return parent;
@@ -53,11 +55,15 @@ struct Part {
   Gram held = Gram::Zero();    ///< of those and of the supports
 };
 
-/// The support sees translation e_c and rotation w as e_c . (w x arm) = w . (arm x e_c).
-Gram seen(const Vec3& arm, int c) {
+/// A support along d sees translation e as d . e and rotation w as d . (w x arm) = w . (arm x d).
+Gram seen(const Vec3& arm, const Vec3& d) {
   Eigen::Matrix<double, 6, 1> row;
-  row << Vec3::Unit(c), arm.cross(Vec3::Unit(c));
+  row << d, arm.cross(d);
   return row * row.transpose();
+}
+
+Vec3 arm_of(const Mesh& mesh, int node, const Part& part) {
+  return part.radius > 0 ? Vec3((mesh.points.row(node).transpose() - part.centre) / part.radius) : Vec3::Zero();
 }
 
 long rank(const Gram& gram) {
@@ -85,10 +91,10 @@ std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_o
   for (std::size_t n = 0; n < part_of.size(); ++n) {
     if (part_of[n] < 0) continue;
     Part& part = parts[static_cast<std::size_t>(part_of[n])];
-    const Vec3 arm = (mesh.points.row(static_cast<Eigen::Index>(n)).transpose() - part.centre) / part.radius;
+    const Vec3 arm = arm_of(mesh, static_cast<int>(n), part);
     for (int c = 0; c < 3; ++c) {
-      part.all += seen(arm, c);
-      if (c >= components) part.absent += seen(arm, c);
+      part.all += seen(arm, Vec3::Unit(c));
+      if (c >= components) part.absent += seen(arm, Vec3::Unit(c));
     }
     part.held = part.absent;
   }
@@ -98,6 +104,8 @@ std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_o
 }  // namespace
 
 void check_held(const Model& model, const Step& step) {
+  // Springs hold parts against each other in ways that only the matrix can tell.
+  if (!step.springs.empty()) return;
   const Mesh& mesh = *model.mesh;
   const std::vector<int> part_of = connected_parts(model);
   std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
@@ -106,10 +114,15 @@ void check_held(const Model& model, const Step& step) {
       const int id = part_of[static_cast<std::size_t>(node)];
       if (id < 0) continue;
       Part& part = parts[static_cast<std::size_t>(id)];
-      const Vec3 arm = (mesh.points.row(node).transpose() - part.centre) / part.radius;
       for (int c = 0; c < components(model); ++c)
-        if (condition.components[c]) part.held += seen(arm, c);
+        if (condition.components[c]) part.held += seen(arm_of(mesh, node, part), Vec3::Unit(c));
     }
+  for (const Slide& slide : step.slides)
+    for (const int node : slide.nodes)
+      if (const int id = part_of[static_cast<std::size_t>(node)]; id >= 0) {
+        Part& part = parts[static_cast<std::size_t>(id)];
+        part.held += seen(arm_of(mesh, node, part), slide.normal.normalized());
+      }
   for (const Part& part : parts) {
     if (part.points == 0) continue;
     const long motions = rank(part.all) - rank(part.absent), free = rank(part.all) - rank(part.held);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // All elements of a model, ready for assembly: batches of eight, coloured chunks, precomputed positions.
 #pragma once
+#include <array>
 #include <memory>
 #include <span>
 
@@ -22,16 +23,17 @@ struct Numbering {
   std::vector<int> node_of;        ///< mesh point of each numbered node
   std::vector<int> number_of;      ///< number of each mesh point, -1 without unknowns
   std::vector<int> element_nodes;  ///< numbers of the nodes of `elements`, element after element
+  std::vector<std::array<int, 2>> links;  ///< pairs of numbered nodes that springs join
   int nodes() const { return static_cast<int>(node_of.size()); }
 };
 Numbering number(const Model& model);
 
-/// The kind of the elements of a model (all are of one).
+/// The kind of the elements of a model (all are of one); vertex where it has none.
 CellKind element_kind(const Model& model);
 /// True if the unknown is no displacement: a law has one component.
 bool is_scalar(const Model& model);
-/// Unknowns per node of a model: 1 for lines and scalar problems, 2 for triangles, 3 for tetrahedra. Vectors always
-/// have 3 numbers per node; those that a problem does not have are fixed at zero (make_supports).
+/// Unknowns per node of a model: 1 for lines and scalar problems, 2 for triangles, 3 for tetrahedra and particles.
+/// Vectors always have 3 numbers per node; those that a problem does not have are fixed at zero (make_supports).
 int components(const Model& model);
 
 /// #points x 3 of the mesh from 3 numbers per numbered node (zero elsewhere), and back.
@@ -72,7 +74,7 @@ class Elements {
   virtual const PatternPtr& pattern() const = 0;
 };
 
-/// Prepares the elements of a checked model. Keeps a copy of what it needs.
+/// Prepares the elements of a checked model, or none where it has only point masses. Keeps a copy of what it needs.
 std::unique_ptr<Elements> make_elements(const Model& model);
 
 }  // namespace msml::fe

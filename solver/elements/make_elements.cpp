@@ -2,6 +2,7 @@
 // Chooses the elements of a model by mesh kind and formulation.
 #include <algorithm>
 
+#include "solver/elements/no_elements.hpp"
 #include "solver/elements/simplex_elements.hpp"
 
 namespace msml::fe {
@@ -9,6 +10,8 @@ namespace {
 
 std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
   switch (kind) {
+    case CellKind::vertex:
+      return make_no_elements(model);
     case CellKind::line2:
       return std::make_unique<SimplexElements<1, 2>>(model);
     case CellKind::line3:
@@ -29,7 +32,7 @@ std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
 CellKind element_kind(const Model& model) {
   for (const Region& region : model.regions)
     if (!region.elements.empty()) return model.mesh->kinds[static_cast<std::size_t>(region.elements.front())];
-  return CellKind::tet4;
+  return CellKind::vertex;
 }
 
 bool is_scalar(const Model& model) {
@@ -38,7 +41,10 @@ bool is_scalar(const Model& model) {
   });
 }
 
-int components(const Model& model) { return is_scalar(model) ? 1 : dimension(element_kind(model)); }
+int components(const Model& model) {
+  const int dimension = msml::dimension(element_kind(model));
+  return is_scalar(model) ? 1 : dimension == 0 ? 3 : dimension;
+}
 
 std::unique_ptr<Elements> make_elements(const Model& model) { return standard_elements(model, element_kind(model)); }
 

@@ -57,6 +57,23 @@ void order_elements(const Model& model, const Curve& curve, Numbering& numbering
   }
 }
 
+/// Nodes with a mass of their own, and the pairs that springs join.
+void add_loose_parts(const Model& model, Numbering& numbering) {
+  for (const PointMass& mass : model.point_masses) {
+    int& number = numbering.number_of[static_cast<std::size_t>(mass.node)];
+    if (number >= 0) continue;
+    number = numbering.nodes();
+    numbering.node_of.push_back(mass.node);
+  }
+  for (const Step& step : model.steps)
+    for (const Spring& spring : step.springs) {
+      if (spring.second < 0) continue;
+      const int first = numbering.number_of[static_cast<std::size_t>(spring.first)];
+      const int second = numbering.number_of[static_cast<std::size_t>(spring.second)];
+      if (first >= 0 && second >= 0) numbering.links.push_back({first, second});
+    }
+}
+
 }  // namespace
 
 Numbering number(const Model& model) {
@@ -65,7 +82,7 @@ Numbering number(const Model& model) {
   Numbering numbering;
   numbering.mesh = model.mesh;
   order_elements(model, curve, numbering);
-  numbering.kind = mesh.kinds[static_cast<std::size_t>(numbering.elements.front())];
+  numbering.kind = element_kind(model);
   numbering.components = components(model);
   numbering.scalar = is_scalar(model);
   const int nodes = node_count(numbering.kind);
@@ -86,6 +103,7 @@ Numbering number(const Model& model) {
   for (const int e : numbering.elements)
     for (int a = 0; a < nodes; ++a)
       numbering.element_nodes.push_back(numbering.number_of[static_cast<std::size_t>(mesh.cell(e)[a])]);
+  add_loose_parts(model, numbering);
   return numbering;
 }
 

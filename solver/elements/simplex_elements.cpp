@@ -102,7 +102,7 @@ void merge(Assembled& sum, const Assembled& part) {
 template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
-      pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes)),
+      pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes, numbering_.links)),
       positions_(model.mesh->points),
       thickness_(dimension < 3 ? model.thickness : 1) {
   const Rule<dimension> places = rule();

@@ -8,8 +8,9 @@ namespace msml::fe {
 namespace {
 
 IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, double share) {
-  Increment increment{run.now.u, path.supports.fixed, path.supports.at(share, path.time(share)), path.loads(share), {},
-                      nullptr};
+  Increment increment{
+      run.now.u, path.supports.fixed,  path.supports.at(share, path.time(share)), path.loads(share), {}, nullptr,
+      {},        &path.supports.slides};
   run.equations.begin_step((share - from) * path.duration);
   if (run.equations.has_history()) run.newton.forget();
   return run.newton.run(increment);
@@ -20,7 +21,7 @@ void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) 
   run.now.u = u;
   run.newton.prepare(u, path.loads(share));
   run.newton.rest();
-  run.set_reactions(run.newton.forces().residual(), path.supports.fixed);
+  run.set_reactions(run.newton.forces().residual(), path.supports);
   run.account(before);
   run.equations.end_step(u);
 }

@@ -14,30 +14,31 @@ constexpr int watch_every = 100;  // time steps between estimates of the stable 
 
 struct Explicit {
   Run& run;
-  BlockMatrix K0;  ///< semidefinite stiffness, for Rayleigh damping and the stable step
-
-  bool damped() const { return run.model.settings.damping_stiffness > 0; }
+  BlockMatrix C;        ///< damping beside alpha M
+  bool damped = false;  ///< there is such damping
 
   /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given.
-  void balance(const Vector& u, const Vector& damping_velocity, const ScaledLoads& loads, const Mask& fixed,
+  void balance(const Vector& u, const Vector& damping_velocity, const ScaledLoads& loads, const Supports& supports,
                Vector& a) {
     run.newton.look(u, loads);
-    run.newton.move(damping_velocity, Vector::Zero(u.size()), damped() ? &K0 : nullptr);
-    const Vector force = run.newton.forces().residual();
+    run.newton.move(damping_velocity, Vector::Zero(u.size()), damped ? &C : nullptr);
+    Vector force = run.newton.forces().residual();
+    supports.slides.project(force);
     const ScalarMatrix& mass = run.equations.mass();
     for (Eigen::Index k = 0; k < a.size(); ++k)
-      if (!fixed[static_cast<std::size_t>(k)])
+      if (!supports.fixed[static_cast<std::size_t>(k)])
         a[k] =
             force[k] / mass.values[static_cast<std::size_t>(mass.pattern->diagonal[static_cast<std::size_t>(k / 3)])];
-    run.newton.move(damping_velocity, a, damped() ? &K0 : nullptr);
+    run.newton.move(damping_velocity, a, damped ? &C : nullptr);
   }
 
   /// False if dt is too large for the present stiffness and the scene does not allow that.
-  bool stable(const Step& step, const Mask& fixed) {
+  bool stable(const Step& step, const Mask& fixed, const ScaledLoads& loads) {
     const Settings& settings = run.model.settings;
     if (settings.allow_unstable) return true;
-    if (!damped()) run.newton.stiffness(run.now.u, K0);
-    const double largest = largest_eigenvalue(K0, run.equations.mass(), fixed);
+    BlockMatrix K(C.pattern);
+    run.newton.stiffness(run.now.u, loads, K);
+    const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
     const double limit = stable_step(settings.integrator, largest, settings.damping_mass, settings.damping_stiffness);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
     if (step.dt <= limit * (1 + 1e-6)) return true;
@@ -73,7 +74,7 @@ struct Explicit {
     const double dt = step.dt;
     const bool centred = method == Integrator::central_difference;
     run.equations.begin_step(dt);
-    if (damped()) run.newton.stiffness(now.u, K0);
+    damped = run.newton.damping(now.u, loads, C);
     if (method == Integrator::forward_euler) now.u += dt * now.v;
     now.v += (centred ? 0.5 * dt : dt) * now.a;
     if (method != Integrator::forward_euler) now.u = before.u + dt * now.v;
@@ -85,13 +86,13 @@ struct Explicit {
         now.a[i] = (now.v[i] - before.v[i]) / dt;
       }
     now.time = loads.front().time = time;
-    balance(now.u, now.v, loads, supports.fixed, now.a);
+    balance(now.u, now.v, loads, supports, now.a);
     if (centred)
       for (Eigen::Index i = 0; i < target.size(); ++i)
         if (!supports.fixed[static_cast<std::size_t>(i)]) now.v[i] += 0.5 * dt * now.a[i];
     if (!sound(step, before)) return false;
     ++now.increment;
-    run.set_reactions(run.newton.forces().residual(), supports.fixed);
+    run.set_reactions(run.newton.forces().residual(), supports);
     run.account(before.u);
     run.equations.end_step(now.u);
     return true;
@@ -123,18 +124,18 @@ void run_explicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
-    run.newton.stiffness(run.now.u, method.K0);
+    method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();
-    method.balance(run.now.u, run.now.v, loads, supports.fixed, run.now.a);
-    run.set_reactions(run.newton.forces().residual(), supports.fixed);
+    method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
+    run.set_reactions(run.newton.forces().residual(), supports);
     run.mark();
-    if (!method.stable(step, supports.fixed)) return;
+    if (!method.stable(step, supports.fixed, loads)) return;
     if (s == 0 && !run.accept()) return;
     const double start = run.now.time;
     for (int k = 1; k <= step.count; ++k) {
       if (!method.advance(step, supports, k, loads, start + k * step.dt)) return;
       if (!run.accept()) return;
-      if (k % watch_every == 0 && !run.equations.small_strain() && !method.stable(step, supports.fixed)) return;
+      if (k % watch_every == 0 && !run.equations.small_strain() && !method.stable(step, supports.fixed, loads)) return;
     }
   }
 }

@@ -19,7 +19,7 @@ Forces mixed(const Kinematics& motion, const Forces& start, const Forces& end) {
 }
 
 /// One time step; false if it failed, and the outcome is explained.
-bool advance(Run& run, Increment& increment, double time, BlockMatrix& K0) {
+bool advance(Run& run, Increment& increment, const Supports& supports, double time, BlockMatrix& C) {
   Newton& newton = run.newton;
   const Kinematics& motion = increment.motion;
   const bool blends = motion.force_share != 1 || motion.inertia_share != 1;
@@ -27,10 +27,7 @@ bool advance(Run& run, Increment& increment, double time, BlockMatrix& K0) {
   increment.offset = carried(motion, start);
   run.equations.begin_step(motion.dt);
   if (run.equations.has_history()) newton.forget();
-  if (run.model.settings.damping_stiffness > 0) {
-    newton.stiffness(run.now.u, K0);
-    increment.damping_matrix = &K0;
-  }
+  if (newton.damping(run.now.u, increment.loads, C)) increment.damping_matrix = &C;
   const IncrementResult result = newton.walk(increment);
   if (result.stop != Stop::converged) return explain(run, result, -1), false;
   const Vector velocity = motion.velocity_at(result.u), acceleration = motion.acceleration_at(result.u);
@@ -49,7 +46,7 @@ bool advance(Run& run, Increment& increment, double time, BlockMatrix& K0) {
   run.now.a = acceleration;
   run.now.time = time;
   ++run.now.increment;
-  run.set_reactions(newton.residual(increment), increment.fixed);
+  run.set_reactions(newton.residual(increment), supports);
   if (blends) run.between = mixed(motion, start, newton.forces());
   run.account(before);
   run.equations.end_step(result.u);
@@ -60,15 +57,15 @@ bool advance(Run& run, Increment& increment, double time, BlockMatrix& K0) {
 
 void run_implicit(Run& run) {
   const Model& model = run.model;
-  BlockMatrix K0(run.newton.tangent().pattern);
+  BlockMatrix C(run.newton.tangent().pattern);
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);
     ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     // Loads and supports may jump between steps, and the acceleration with them.
-    run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports.fixed);
-    run.set_reactions(run.newton.forces().residual(), supports.fixed);
+    run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
+    run.set_reactions(run.newton.forces().residual(), supports);
     run.mark();
     if (s == 0 && !run.accept()) return;
     const double start = run.now.time;
@@ -80,8 +77,10 @@ void run_implicit(Run& run) {
                           supports.at(static_cast<double>(k) / step.count, time),
                           loads,
                           kinematics(model.settings, run.now, supports.fixed, step.dt),
-                          nullptr};
-      if (!advance(run, increment, time, K0) || !run.accept()) return;
+                          nullptr,
+                          {},
+                          &supports.slides};
+      if (!advance(run, increment, supports, time, C) || !run.accept()) return;
     }
   }
 }

@@ -27,10 +27,10 @@ bool Run::accept() {
   return false;
 }
 
-void Run::set_reactions(const Vector& residual, const Mask& fixed) {
-  now.reaction = -residual;
-  for (std::size_t k = 0; k < fixed.size(); ++k)
-    if (!fixed[k]) now.reaction[static_cast<Eigen::Index>(k)] = 0;
+void Run::set_reactions(const Vector& residual, const Supports& supports) {
+  const Vector across = supports.slides.removed(residual);
+  for (Eigen::Index k = 0; k < residual.size(); ++k)
+    now.reaction[k] = supports.fixed[static_cast<std::size_t>(k)] ? -residual[k] : -across[k];
 }
 
 void Run::mark() {

@@ -32,7 +32,7 @@ struct Run {
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
   /// Reactions that balance a residual.
-  void set_reactions(const Vector& residual, const Mask& fixed);
+  void set_reactions(const Vector& residual, const Supports& supports);
   /// Work and loss from u_before to the present state by the trapezoidal rule, with the forces at the last mark and
   /// those that Newton evaluated last. Marks.
   void account(const Vector& u_before);

@@ -10,13 +10,14 @@ namespace {
 /// Faults of a sound scene with one more condition on line 2 and one more output on line 3. Long lists of what is
 /// allowed are cut off.
 std::string faults(const std::string& constraint, const std::string& output = "") {
-  const std::string scene = "<msml><scene><object><constraints><constraint>\n" + constraint +
-                            "</constraint></constraints><output>\n" + output +
-                            "</output>\n<mesh><linearTet mesh=\"${b}\"/></mesh><material><region indices=\"${i}\">"
-                            "<linearElasticMaterial/></region></material></object></scene><workflow>"
-                            "<GenerateBoxMesh id=\"b\" size=\"1 1 1\" divisions=\"1 1 1\"/>"
-                            "<ComputeIndicesFromBoxROI id=\"i\" mesh=\"${b}\" select=\"points\" box=\"0 0 0 1 1 1\"/>"
-                            "</workflow></msml>";
+  const std::string scene =
+      "<msml><scene><object><constraints><constraint>\n" + constraint + "</constraint></constraints><output>\n" +
+      output +
+      "</output>\n<mesh><linearTet mesh=\"${b}\"/></mesh><material><region indices=\"${i}\">"
+      "<linearElasticMaterial youngModulus=\"1\" poissonRatio=\"0.3\"/></region></material></object></scene><workflow>"
+      "<GenerateBoxMesh id=\"b\" size=\"1 1 1\" divisions=\"1 1 1\"/>"
+      "<ComputeIndicesFromBoxROI id=\"i\" mesh=\"${b}\" select=\"points\" box=\"0 0 0 1 1 1\"/>"
+      "</workflow></msml>";
   std::string text =
       tiny::lines(compile_text(scene, "/nonexistent/s.xml", real_language(), {.output_folder = "/nonexistent"}).faults);
   if (const auto at = text.find("; an expression may use"); at != std::string::npos) text = text.substr(0, at);

@@ -308,7 +308,8 @@ TEST(SurfacePressureOnMesh, MatchesTheTrianglesOfASeparateSurface) {
               testing::UnorderedElementsAre(4, 6, 7));
   load["pulse"] = std::string("sin");
   EXPECT_EQ(build(language, topped(language, mesh, load, "surfacePressureOnMesh")).error,
-            "scene.xml:7: surfacePressureOnMesh: pulse is not available yet; a table or an expression in t gives the pressure over time");
+            "scene.xml:7: surfacePressureOnMesh: pulse is not available yet; a table or an expression in t gives the "
+            "pressure over time");
 }
 
 Scene two_steps(const Language& language) {

@@ -117,7 +117,7 @@ Record condition(const Language& language, const std::string& tag, const Attribu
 Record Scene::record(const Language& language) const {
   Record object = language.tag(
       "object", "object", {},
-      {language.tag("mesh", "meshes", {}, {language.tag(mesh_kind, "mesh", {{"mesh", mesh}})}),
+      {language.tag("mesh", "meshes", {}, {mesh_tag ? *mesh_tag : language.tag(mesh_kind, "mesh", {{"mesh", mesh}})}),
        language.tag("material", "materials", {}, regions), language.tag("constraints", "constraints", {}, constraints),
        language.tag("output", "outputs", {}, outputs)});
   object.id = "cube";

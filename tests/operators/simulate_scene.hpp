@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,7 @@ IndexSetPtr index_set(const MeshPtr& mesh, Indexed kind, std::vector<int> ids);
 struct Scene {
   std::string mesh_kind = "linearTet";
   MeshPtr mesh;
+  std::optional<Record> mesh_tag = {};  ///< instead of mesh_kind and mesh
   std::vector<Record> regions, constraints, outputs, steps;
   Attributes solver{{"timeIntegration", std::string("static")}, {"linearSolver", std::string("direct")}};
   Record record(const Language& language) const;

@@ -166,8 +166,7 @@ TEST(Result, AnIdThatIsNoFileNameIsRefused) {
 
 TEST(FutureTags, AreKnownAndRefusedWithWhatToUseInstead) {
   const Language language;
-  for (const char* tag :
-       {"springMeshToFixed", "supportingMesh", "shapeMatchingConstraint", "contactsurface", "spring"}) {
+  for (const char* tag : {"supportingMesh", "shapeMatchingConstraint", "contactsurface"}) {
     const Description* description = language.registry().find(tag, {"constraint"});
     ASSERT_NE(description, nullptr) << tag;
     EXPECT_FALSE(description->unavailable().empty()) << tag;
@@ -176,10 +175,12 @@ TEST(FutureTags, AreKnownAndRefusedWithWhatToUseInstead) {
   EXPECT_NE(language.registry().find("neoHookeanMaterial", {"material"}), nullptr);
 }
 
-TEST(Outputs, ProduceASeries) {
+TEST(Outputs, ProduceASeriesOrAFile) {
   const Language language;
   for (const char* tag : {"displacement", "result"})
     EXPECT_EQ(language.registry().find(tag, {"output"})->produces(), Type::series);
+  for (const char* tag : {"probe", "energies"})
+    EXPECT_EQ(language.registry().find(tag, {"output"})->produces(), Type::file);
 }
 
 }  // namespace

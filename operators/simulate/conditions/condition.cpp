@@ -20,7 +20,7 @@ std::vector<ConditionFactory> conditions() {
   return {fixed_constraint(), displacement_constraint(),  force_constraint(),
           surface_pressure(), surface_pressure_on_mesh(), surface_traction(),
           body_force(),       symmetry_plane(),           roller(),
-          initial_velocity(), initial_displacement()};
+          initial_velocity(), initial_displacement(), spring(), spring_to_point(), spring_mesh_to_fixed()};
 }
 
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes) {

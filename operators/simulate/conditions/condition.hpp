@@ -42,6 +42,9 @@ ConditionFactory symmetry_plane();
 ConditionFactory roller();
 ConditionFactory initial_velocity();
 ConditionFactory initial_displacement();
+ConditionFactory spring();
+ConditionFactory spring_to_point();
+ConditionFactory spring_mesh_to_fixed();
 
 /// All of the above.
 std::vector<ConditionFactory> conditions();

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of fields.
+#include "operators/simulate/fields.hpp"
+
+#include "msml/core/error.hpp"
+
+namespace msml::simulation {
+namespace {
+
+std::vector<FieldFacts> with_nodal() {
+  std::vector<FieldFacts> all{
+      {"displacement", 3, true, "x - X"},
+      {"velocity", 3, true, "rate of the displacement"},
+      {"acceleration", 3, true, "rate of the velocity"},
+      {"reaction", 3, true, "force of the constraints on the body; zero where it is free"},
+      {"stress", 6, false, "Cauchy's stress"},
+      {"vonMises", 1, false, "equivalent stress sqrt(3/2 s:s), s the deviator of stress"},
+      {"principalStress", 3, false, "eigenvalues of stress, the largest first"},
+      {"pressure", 1, false, "minus a third of the trace of stress"},
+      {"firstPiola", 9, false, "first Piola stress: force per reference area"},
+      {"secondPiola", 6, false, "second Piola stress F^-1 P"},
+      {"strain", 6, false,
+       "the strain of the law: U - I (corotated), the symmetric gradient (small), its own otherwise"},
+      {"greenLagrange", 6, false, "Green-Lagrange strain (F^T F - I)/2"},
+      {"deformationGradient", 9, false, "F = dx/dX"},
+      {"J", 1, false, "smallest det F of the element"},
+      {"energyDensity", 1, false, "elastic energy per reference volume"}};
+  const std::size_t count = all.size();
+  for (std::size_t i = 0; i < count; ++i)
+    if (!all[i].nodal && all[i].name != "J")
+      all.push_back({all[i].name + "_nodal", all[i].components, true, all[i].name + " recovered at nodes"});
+  all.push_back({"region", 1, false, "number of the region; always there"});
+  return all;
+}
+
+}  // namespace
+
+const std::vector<FieldFacts>& all_fields() {
+  static const std::vector<FieldFacts> fields = with_nodal();
+  return fields;
+}
+
+const std::vector<std::string>& field_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> list;
+    for (const FieldFacts& facts : all_fields()) list.push_back(facts.name);
+    return list;
+  }();
+  return names;
+}
+
+const FieldFacts& facts_of(const std::string& field) {
+  for (const FieldFacts& facts : all_fields())
+    if (facts.name == field) return facts;
+  throw Error("no field '" + field + "'", {}, Failure::internal);
+}
+
+std::vector<std::string> component_names(const FieldFacts& facts) {
+  if (facts.name.starts_with("principal")) return {"1", "2", "3"};
+  switch (facts.components) {
+    case 3:
+      return {"x", "y", "z"};
+    case 6:
+      return {"xx", "yy", "zz", "xy", "yz", "xz"};
+    case 9:
+      return {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
+    default:
+      return {""};
+  }
+}
+
+}  // namespace msml::simulation

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every output request does while the simulation runs.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "msml/core/value.hpp"
+#include "operators/simulate/build_model.hpp"
+#include "operators/simulate/state_fields.hpp"
+
+namespace msml::simulation {
+
+class OutputWriter {
+ public:
+  OutputWriter() = default;
+  OutputWriter(const OutputWriter&) = delete;
+  OutputWriter& operator=(const OutputWriter&) = delete;
+  virtual ~OutputWriter() = default;
+  /// Whether the request asks for this state, whatever comes after it.
+  virtual bool wants(const fe::State& state) const = 0;
+  /// Writes the state, and files whole or not at all.
+  virtual void write(const fe::State& state, StateFields& fields) = 0;
+  /// Writes the last state if it has not been written yet, and brings the files to their end.
+  virtual void finish(const fe::State& last, StateFields& fields) = 0;
+  /// What `${id}` stands for.
+  virtual Value value() const = 0;
+};
+
+/// One writer per request of the simulation, which must outlive them. Throws Error where a request does not fit the
+/// body, such as a probe outside it.
+std::vector<std::unique_ptr<OutputWriter>> make_writers(const Simulation& simulation,
+                                                        const std::filesystem::path& folder, Reporter& reporter);
+
+/// Lines of numbers under a line of names, in a file ID.csv.
+class CsvFile {
+ public:
+  CsvFile(std::filesystem::path path, const std::vector<std::string>& names);
+  void add(const std::vector<double>& row);
+  /// Writes the file as it is now: at once, or at most once a second.
+  void save(bool at_once);
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  std::string text_;
+  std::chrono::steady_clock::time_point saved_{};
+};
+
+/// A field at a place or at nodes over time: ID.csv.
+std::unique_ptr<OutputWriter> make_probe(const Simulation& simulation, const OutputRequest& request, Reporter& reporter,
+                                         const std::filesystem::path& folder);
+/// Energies, work and momentum over time: ID.csv.
+std::unique_ptr<OutputWriter> make_energies(const OutputRequest& request, const std::filesystem::path& folder);
+
+}  // namespace msml::simulation

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Nodes without elements.
+#include "solver/elements/no_elements.hpp"
+
+namespace msml::fe {
+namespace {
+
+class NoElements final : public Elements {
+ public:
+  explicit NoElements(const Model& model)
+      : numbering_(number(model)), pattern_(make_pattern(numbering_.nodes(), {}, 1, numbering_.links)) {}
+  Assembled add_internal(const Vector&, Want, Vector&, BlockMatrix*) const override { return {}; }
+  void add_mass(bool, ScalarMatrix&) const override {}
+  std::vector<ElementPoints> points(const Vector&) const override { return {}; }
+  const Numbering& numbering() const override { return numbering_; }
+  const PatternPtr& pattern() const override { return pattern_; }
+
+ private:
+  Numbering numbering_;
+  PatternPtr pattern_;
+};
+
+}  // namespace
+
+std::unique_ptr<Elements> make_no_elements(const Model& model) { return std::make_unique<NoElements>(model); }
+
+}  // namespace msml::fe
