@@ -7,6 +7,7 @@
 #include "msml/core/atomic_file.hpp"
 #include "msml/core/operator.hpp"
 #include "operators/simulate/check_report.hpp"
+#include "operators/simulate/examine_scene.hpp"
 #include "operators/simulate/series_writer.hpp"
 
 namespace msml::operators {
@@ -85,6 +86,7 @@ Operator simulate() {
   op.allow({"object", 1, 1});
   op.allow({"solver", 1, 1});
   op.allow({"simulation", 1, 1});
+  op.examine(simulation::examine_scene);
   op.run(simulate_object);
   return op;
 }

@@ -56,6 +56,7 @@ void run_passes(Work& work, const Tag& root) {
   check_holders(work, root);
   note_unused(work);
   order_nodes(work);
+  examine_nodes(work);
 }
 
 /// The faults of the document and, where it has a root, those of the scene.

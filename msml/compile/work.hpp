@@ -89,6 +89,10 @@ void bind_tasks(Work& work);
 void declare_objects(Work& work, const Tag& root);
 void lower_objects(Work& work, const Tag& root);
 
+// examine.cpp
+/// Asks each operator what makes no sense in its record; only of a scene without faults so far.
+void examine_nodes(Work& work);
+
 // order.cpp
 /// Fills Node::needs and Graph::order; cycles are faults that print their path.
 void order_nodes(Work& work);

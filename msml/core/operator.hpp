@@ -76,6 +76,10 @@ class Context {
   int threads_;
 };
 
+/// Tells what makes no sense in a record before anything runs; attributes that other tasks feed are absent there. Each
+/// fault is handed to the second argument.
+using Examiner = std::function<void(const Record&, const std::function<void(const Error&)>&)>;
+
 /// A description of category "operator" and the function behind it. Attributes are inputs, parameters and targets.
 class Operator : public Description {
  public:
@@ -95,6 +99,9 @@ class Operator : public Description {
   /// Its result is what it prints: it runs even where nothing else needs its outputs.
   void reports() { reports_ = true; }
   bool is_report() const { return reports_; }
+  /// Called when a scene is compiled, once all attributes have passed their own checks.
+  void examine(Examiner examiner) { examiner_ = std::move(examiner); }
+  const Examiner& examiner() const { return examiner_; }
   void run(std::function<void(Context&)> function) { run_ = std::move(function); }
   void operator()(Context& context) const { run_(context); }
   /// Position of the first output, the value of ${task}; -1 if there is none.
@@ -102,6 +109,7 @@ class Operator : public Description {
 
  private:
   std::function<void(Context&)> run_;
+  Examiner examiner_;
   bool reports_ = false;
 };
 

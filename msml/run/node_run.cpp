@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <mutex>
 
@@ -137,7 +139,18 @@ class NodeRun {
     }
     if (const int first = node_.kind == NodeKind::simulation ? 0 : node_.op->first_output(); first >= 0)
       report_.summary = summary(context.outputs[static_cast<std::size_t>(first)]);
+    note_numbers(context.outputs);
     return std::move(context.outputs);
+  }
+
+  /// Numbers among the outputs go to the report in full precision.
+  void note_numbers(const std::vector<Value>& outputs) {
+    const std::vector<Slot>& slots = node_.op->slots();
+    std::string text;
+    for (std::size_t slot = 0; slot < std::min(slots.size(), outputs.size()); ++slot)
+      if (const auto* number = std::get_if<double>(&outputs[slot]); number && slots[slot].role == Role::output)
+        text += fmt::format("{}\"{}\": {}", text.empty() ? "" : ", ", slots[slot].name, *number);
+    if (!text.empty()) report_.facts["values"] = "{" + text + "}";
   }
 
   /// The operator once for each state of the series; the outputs are those of the last.

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The list of verification cases: what is run, what is measured, what it must come to.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace msml::verification {
+
+/// Where a number is read after a run: a JSON pointer into the report of the node `node` (such as "/check/volumeChange"
+/// or "/values/error"), or a column of a probe's file in its last row.
+struct Measure {
+  std::string node, pointer;  ///< of the report
+  std::string file, column;   ///< or of a table
+};
+
+/// One way to compute a case: variables to set and tags to exchange in the scene. Where `vary` names a variable, the
+/// method is run for each of its values, coarse to fine, and must converge with `order`.
+struct Method {
+  std::string name;
+  std::map<std::string, std::string> set, replace;
+  std::string vary;
+  std::vector<std::string> values;
+  std::optional<double> expect;  ///< number that the measure must come to; absent: the measure is an error, to be zero
+  std::optional<double> order;   ///< of convergence in 1/value, within 0.15 (more is no fault), in the last pair
+  double limit = 0;              ///< of the last run's error: relative to `expect` where that is not zero
+  double above = 0;              ///< the error must be at least this: where theory says that a method fails
+  int exit_code = 0;             ///< what the program must end with
+  std::string says;              ///< words that its messages must hold
+};
+
+/// A problem with its reference.
+struct Case {
+  std::string name, scene, source;
+  Measure measure;
+  bool smoke = false;
+  std::vector<Method> methods;
+};
+
+/// Throws std::runtime_error on a file that cannot be read or a key that is not known.
+std::vector<Case> read_cases(const std::filesystem::path& file);
+
+}  // namespace msml::verification

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One process per run; numbers are read from its report.
+#include "tests/verification/runs.hpp"
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace msml::verification {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::string content(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+std::string file_name(std::string text) {
+  for (char& c : text)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return text;
+}
+
+std::string quoted(const std::string& text) { return "'" + text + "'"; }
+
+/// The scene, or a copy in the results with the method's tags exchanged.
+fs::path scene_file(const Program& program, const Case& each, const Method& method, const fs::path& folder) {
+  const fs::path original = program.scenes / each.scene;
+  if (method.replace.empty()) return original;
+  std::string text = content(original);
+  for (const auto& [from, to] : method.replace) {
+    if (text.find(from) == std::string::npos)
+      throw std::runtime_error(fmt::format("{} holds no '{}' to replace", each.scene, from));
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+      text.replace(at, from.size(), to);
+  }
+  const fs::path copy = folder / original.filename();
+  std::ofstream(copy) << text;
+  return copy;
+}
+
+int execute(const Program& program, const fs::path& scene, const std::map<std::string, std::string>& set,
+            const fs::path& folder) {
+  std::string command =
+      fmt::format("timeout 600 {} exec {} -o {} --log-json {}", quoted(program.msml.string()), quoted(scene.string()),
+                  quoted(folder.string()), quoted((folder / "log.json").string()));
+  for (const auto& [name, value] : set) command += " --set " + quoted(name + "=" + value);
+  command += fmt::format(" >{} 2>&1", quoted((folder / "output.txt").string()));
+  const int status = std::system(command.c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+double last_of_column(const fs::path& file, const std::string& column) {
+  std::ifstream stream(file);
+  std::string header, row, last, cell;
+  if (!std::getline(stream, header)) throw std::runtime_error("cannot read " + file.filename().string());
+  while (std::getline(stream, row))
+    if (!row.empty()) last = row;
+  std::istringstream names(header), cells(last);
+  while (std::getline(names, cell, ',')) {
+    std::string number;
+    std::getline(cells, number, ',');
+    if (cell == column) return std::stod(number);
+  }
+  throw std::runtime_error(fmt::format("{} has no column {}", file.filename().string(), column));
+}
+
+const Json* node_of(const Json& log, const std::string& id) {
+  for (const Json& node : log.at("nodes"))
+    if (node.at("id") == id) return &node;
+  return nullptr;
+}
+
+double measured(const Measure& measure, const Json& log, const fs::path& folder) {
+  if (!measure.file.empty()) return last_of_column(folder / measure.file, measure.column);
+  const Json* node = node_of(log, measure.node);
+  if (node == nullptr) throw std::runtime_error("no task is called " + measure.node);
+  return node->at(Json::json_pointer(measure.pointer)).get<double>();
+}
+
+long unknowns_of(const Json& log) {
+  for (const Json& node : log.at("nodes"))
+    if (node.contains("check")) return node["check"].value("unknowns", 0L);
+  return 0;
+}
+
+double simulation_seconds(const Json& log) {
+  double sum = 0;
+  for (const Json& node : log.at("nodes"))
+    if (node.contains("check")) sum += node.value("seconds", 0.0);
+  return sum;
+}
+
+std::string last_line(const std::string& text) {
+  std::string line, last;
+  std::istringstream lines(text);
+  while (std::getline(lines, line))
+    if (!line.empty()) last = line;
+  return last;
+}
+
+void judge(const Method& method, Row& row) {
+  if (method.expect)
+    row.error = std::abs(*row.value - *method.expect) / (*method.expect != 0 ? std::abs(*method.expect) : 1);
+  if (!method.expect) row.error = std::abs(*row.value);
+  row.pass = std::isfinite(*row.error);
+}
+
+Row run_once(const Program& program, const Case& each, const Method& method, const std::string& value) {
+  Row row{.name = each.name, .method = method.name, .source = each.source, .expect = method.expect};
+  std::map<std::string, std::string> set = method.set;
+  if (!method.vary.empty()) {
+    set[method.vary] = value;
+    row.method += fmt::format("{}{} = {}", method.name.empty() ? "" : ", ", method.vary, value);
+  }
+  const fs::path folder = program.results / file_name(each.name + " " + row.method);
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  try {
+    const int code = execute(program, scene_file(program, each, method, folder), set, folder);
+    const std::string output = content(folder / "output.txt");
+    if (code != method.exit_code) throw std::runtime_error(fmt::format("exit code {}: {}", code, last_line(output)));
+    if (!method.says.empty() && output.find(method.says) == std::string::npos)
+      throw std::runtime_error(fmt::format("does not say '{}'", method.says));
+    const Json log = Json::parse(content(folder / "log.json"));
+    row.unknowns = unknowns_of(log);
+    row.seconds = simulation_seconds(log);
+    if (!method.says.empty()) row.remark = fmt::format("says '{}'", method.says);
+    if (code != 0 || (each.measure.node.empty() && each.measure.file.empty())) {
+      row.pass = true;
+      return row;
+    }
+    row.value = measured(each.measure, log, folder);
+    judge(method, row);
+  } catch (const std::exception& error) {
+    row.remark = error.what();
+  }
+  return row;
+}
+
+/// Observed order between the last two runs: errors over the ratio of the varied numbers.
+void judge_order(const Method& method, std::vector<Row>& rows) {
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (!rows[i].error || !rows[i - 1].error) continue;
+    const double ratio = std::abs(std::log(std::stod(method.values[i]) / std::stod(method.values[i - 1])));
+    rows[i].order = std::log(*rows[i - 1].error / *rows[i].error) / ratio;
+  }
+  Row& last = rows.back();
+  if (!method.order || !last.pass) return;
+  if (!last.order || !(*last.order > *method.order - 0.15)) {
+    last.pass = false;
+    last.remark = fmt::format("order {:.2f} expected", *method.order);
+  }
+}
+
+}  // namespace
+
+std::vector<Row> run_method(const Program& program, const Case& each, const Method& method) {
+  std::vector<Row> rows;
+  for (const std::string& value : method.vary.empty() ? std::vector<std::string>{""} : method.values)
+    rows.push_back(run_once(program, each, method, value));
+  Row& last = rows.back();
+  if (last.pass && last.error) {
+    last.limit = method.limit;
+    last.above = method.above;
+    if (method.limit > 0) last.pass = *last.error <= method.limit;
+    if (method.above > 0) last.pass = last.pass && *last.error >= method.above;
+    if (method.limit <= 0 && method.above <= 0 && !method.order) {
+      last.pass = false;
+      last.remark = "nothing is asked of this number";
+    }
+  }
+  if (!method.vary.empty()) judge_order(method, rows);
+  return rows;
+}
+
+}  // namespace msml::verification
