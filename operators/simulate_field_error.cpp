@@ -180,6 +180,7 @@ double against_mesh(const Mesh& mesh, const Mesh& reference, const std::string& 
 Operator simulate_field_error() {
   Operator op("ComputeFieldError", "Error of a point field against a formula, or against the field on a finer mesh.");
   op.source("L2 and H1 by Gauss rules of degree 5 (linear) and 7 (quadratic elements)");
+  op.reports();
   op.note("Positions are those of the reference configuration: a field 'displacement' is taken off the points.");
   const auto mesh = op.input<Mesh>("mesh", "with the field; of a series the last state");
   const auto reference = op.input<Mesh>("referenceMesh", "whose field is taken as true; instead of expected", true);
@@ -199,12 +200,16 @@ Operator simulate_field_error() {
     const Record& args = c.args();
     if (args.has(reference) == args.has(expected))
       throw Error("give either expected or referenceMesh, what the field is to be compared with");
-    if (args.has(reference)) {
-      c.set(error, against_mesh(c.get(mesh), c.get(reference), c.get(field), c.get(norm), c.get(relative)));
-      return;
-    }
-    const Exact exact{functions(args, expected), c.get(time)};
-    c.set(error, against_formula(c.get(mesh), c.get(field), exact, c.get(norm), c.get(relative)));
+    const auto measured = [&] {
+      if (args.has(reference))
+        return against_mesh(c.get(mesh), c.get(reference), c.get(field), c.get(norm), c.get(relative));
+      const Exact exact{functions(args, expected), c.get(time)};
+      return against_formula(c.get(mesh), c.get(field), exact, c.get(norm), c.get(relative));
+    };
+    const double found = measured();
+    c.reporter().print(fmt::format("{}error of {} ({}): {:.6g}", c.get(relative) ? "relative " : "", c.get(field),
+                                   c.get(norm), found));
+    c.set(error, found);
   });
   return op;
 }
