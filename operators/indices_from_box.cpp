@@ -2,6 +2,8 @@
 // ComputeIndicesFromBoxROI: points, elements or surface triangles inside an axis-parallel box.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "msml/core/operator.hpp"
 
 namespace msml::operators {
@@ -34,6 +36,16 @@ std::vector<int> cells_inside(const Mesh& mesh, int wanted, const Bounds& box) {
   return ids;
 }
 
+int highest_dimension(const Mesh& mesh) {
+  int highest = 0;
+  for (const CellKind kind : mesh.kinds) highest = std::max(highest, dimension(kind));
+  return highest;
+}
+
+bool has_cells(const Mesh& mesh, int wanted) {
+  return std::any_of(mesh.kinds.begin(), mesh.kinds.end(), [&](CellKind kind) { return dimension(kind) == wanted; });
+}
+
 IndexSet select_inside(const Mesh& mesh, const std::string& select, const Bounds& box) {
   IndexSet set;
   if (select == "points") {
@@ -42,6 +54,11 @@ IndexSet select_inside(const Mesh& mesh, const std::string& select, const Bounds
     return set;
   }
   set.kind = select == "elements" ? Indexed::elements : Indexed::faces;
+  const int highest = highest_dimension(mesh);
+  if (highest < 3 && (set.kind == Indexed::elements || has_cells(mesh, highest - 1))) {
+    set.ids = cells_inside(mesh, set.kind == Indexed::elements ? highest : highest - 1, box);
+    return set;
+  }
   if (select == "surfaceElements" && mesh.count(CellKind::tri3) + mesh.count(CellKind::tri6) == 0)
     throw Error(
         fmt::format("select = surfaceElements needs triangles, but the mesh has {}; make them with ExtractSurfaceMesh, "
@@ -68,8 +85,9 @@ Operator indices_from_box() {
       "box", {.unit = "length", .counts = {6}, .doc = "xmin ymin zmin xmax ymax zmax, inclusive, along the axes"});
   const auto select = op.parameter<std::string>(
       "select", {.choices = {"points", "elements", "surfaceElements"},
-                 .doc = "points; elements: tetrahedra with all nodes inside; surfaceElements: triangles with all nodes "
-                        "inside, by their cell ids in the mesh"});
+                 .doc = "points; elements: tetrahedra (of a plane mesh triangles, of a line mesh lines) with all nodes "
+                        "inside; surfaceElements: triangles (lines of a plane mesh, if it has any; vertices of a line "
+                        "mesh) with all nodes inside, by their cell ids in the mesh"});
   const auto indices = op.output<IndexSet>("indices", "0-based, ascending; nodes, elements or faces of the mesh");
   op.note("A box that holds nothing gives an empty set and a warning.");
   op.run([=](Context& c) {

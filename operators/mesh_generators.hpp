@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Structured tetrahedral meshes of simple bodies, for tests and examples.
+// Structured meshes of simple bodies, for tests and examples.
 #pragma once
 #include <array>
 
@@ -33,6 +33,23 @@ struct Sphere {
   int across = 4;                ///< divisions from the inner surface (or a cubic core) to the outer one
   bool octant = false;           ///< only x, y, z >= those of the centre; the cuts lie exactly in the planes
 };
+
+/// tri3 cells in the plane of the origin, counter-clockwise, two for each cell of a grid; then line2 cells on the four
+/// edges, the body on their left.
+struct Rectangle {
+  Vec3 origin = Vec3::Zero();  ///< corner with the smallest coordinates
+  double width = 1, height = 1;
+  std::array<int, 2> divisions{4, 4};
+};
+Mesh generate(const Rectangle& rectangle);
+
+/// line2 cells along x; then vertex cells at both ends.
+struct Segment {
+  Vec3 origin = Vec3::Zero();
+  double length = 1;
+  int divisions = 4;
+};
+Mesh generate(const Segment& segment);
 
 /// tet4 meshes with positive volumes. Every hexahedral cell of a grid is cut into six tetrahedra (five where that is
 /// what its neighbours imply): each face along the diagonal through its point with the smallest id, after J. Dompierre

@@ -23,6 +23,7 @@ void add_scene_descriptions(Registry& registry) {
   fe::describe_materials(registry);
   add(registry, simulation::mass());
   add(registry, simulation::point_mass());
+  add(registry, simulation::prony());
   for (const auto& condition : simulation::conditions()) add(registry, condition);
   for (const auto& output : simulation::outputs()) add(registry, output);
   add(registry, simulation::solver());

@@ -39,7 +39,7 @@ void check_deformation(const Run& run, Check& check) {
   const std::vector<ElementPoints> points = run.equations.elements().points(run.now.u);
   double volume = 0, deformed = 0;
   for (std::size_t e = 0; e < points.size(); ++e) {
-    const Deformation d = deformation(points[e]);
+    const Deformation d = deformation(points[e], run.equations.numbering().scalar);
     volume += d.volume;
     deformed += d.deformed_volume;
     check.largest_strain = std::max(check.largest_strain, d.largest_strain);

@@ -75,9 +75,31 @@ double volume_of(const ElementPoints& points) {
   return volume;
 }
 
-void measure_law(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
+/// Entry (i, j) of a symmetric tensor among its six components.
+constexpr int place_of_six[9] = {0, 3, 5, 3, 1, 4, 5, 4, 2};
+
+/// Stresses from what viscoelastic points remember, S: Cauchy F S F^T / J and first Piola F S, under small strain all
+/// S.
+void take_history(const ElementPoints& points, const double* stress, bool small_strain, Tensor<Lanes>* cauchy,
+                  Tensor<Lanes>* P) {
+  for (int q = 0; q < points.count; ++q) {
+    Mat3 S;
+    for (int k = 0; k < 9; ++k) S(k / 3, k % 3) = stress[6 * q + place_of_six[k]];
+    const Mat3 F = small_strain ? Mat3(Mat3::Identity()) : Mat3(Mat3::Identity() + at(points.gradient, q));
+    const Mat3 first = F * S, sigma = first * F.transpose() / F.determinant();
+    for (int k = 0; k < 9; ++k) {
+      if (cauchy) cauchy->c[k][q] = sigma(k / 3, k % 3);
+      if (P) P->c[k][q] = first(k / 3, k % 3);
+    }
+  }
+}
+
+/// `history` may be null.
+void measure_law(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
+                 ElementResults& results) {
   Measures measures;
   law.measure({&points.gradient, 1}, {&measures, 1});
+  if (history) take_history(points, history, law.small_strain(), &measures.cauchy, nullptr);
   const double volume = volume_of(points);
   for (int q = 0; q < points.count; ++q) {
     const double share = points.weight[q] / volume;
@@ -87,9 +109,11 @@ void measure_law(const ElementPoints& points, const Law& law, std::size_t cell, 
   }
 }
 
-void measure_tensors(const ElementPoints& points, const Law& law, std::size_t cell, ElementResults& results) {
+void measure_tensors(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
+                     ElementResults& results) {
   Response response;
   law.evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
+  if (history) take_history(points, history, law.small_strain(), nullptr, &response.P);
   const double volume = volume_of(points);
   for (int q = 0; q < points.count; ++q) {
     const double share = points.weight[q] / volume;
@@ -108,12 +132,13 @@ double smallest_J(const ElementPoints& points) {
   return smallest;
 }
 
-void measure_element(const ElementPoints& points, const Law& law, std::size_t cell, const ElementRequest& request,
-                     ElementResults& results) {
-  if (request.law) measure_law(points, law, cell, results);
-  if (request.tensors) measure_tensors(points, law, cell, results);
-  if (request.J) results.J[cell] = smallest_J(points);
-  if (request.rotation) results.rotation[cell] = deformation(points).largest_rotation;
+void measure_element(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
+                     const ElementRequest& request, ElementResults& results) {
+  const bool scalar = law.components() == 1;
+  if (request.law) measure_law(points, law, history, cell, results);
+  if (request.tensors) measure_tensors(points, law, history, cell, results);
+  if (request.J) results.J[cell] = scalar ? 1 : smallest_J(points);
+  if (request.rotation) results.rotation[cell] = deformation(points, scalar).largest_rotation;
 }
 
 }  // namespace
@@ -123,8 +148,14 @@ double rotation_angle(const Mat3& R) {
   return std::atan2(axis.norm(), R.trace() - 1) * 180 / std::numbers::pi;
 }
 
-Deformation deformation(const ElementPoints& points) {
+Deformation deformation(const ElementPoints& points, bool scalar) {
   Deformation d;
+  if (scalar) {
+    for (int q = 0; q < points.count; ++q) d.volume += points.weight[q];
+    d.deformed_volume = d.volume;
+    d.smallest_J = 1;
+    return d;
+  }
   Tensor<Lanes> F = points.gradient;
   for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
   const Tensor<Lanes> R = polar_rotation(F);
@@ -156,7 +187,10 @@ ElementResults Measurer::measure(const State& state, const ElementRequest& reque
       const Region& region = model_.regions[static_cast<std::size_t>(numbering.region_of[e])];
       const std::span<const Vec3> places(points[e].place, static_cast<std::size_t>(points[e].count));
       const auto law = law_of_points(model_, region, numbering.elements[e], places);
-      measure_element(points[e], *law, static_cast<std::size_t>(numbering.elements[e]), request, results);
+      const bool remembers = state.history_stress && !region.prony.g.empty();
+      const std::size_t offset = 6 * e * static_cast<std::size_t>(points[e].count);
+      measure_element(points[e], *law, remembers ? state.history_stress->data() + offset : nullptr,
+                      static_cast<std::size_t>(numbering.elements[e]), request, results);
     });
   });
   return results;

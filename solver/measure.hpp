@@ -12,7 +12,8 @@ struct Deformation {
   double largest_strain = 0;    ///< largest absolute principal value of U - I
   double largest_rotation = 0;  ///< angle of the polar rotation, degrees
 };
-Deformation deformation(const ElementPoints& points);
+/// Of a scalar problem nothing deforms.
+Deformation deformation(const ElementPoints& points, bool scalar = false);
 
 /// Angle of a rotation matrix in degrees, accurate near 0 and near 180.
 double rotation_angle(const Mat3& R);

@@ -113,6 +113,49 @@ void check_flat(const Model& model) {
     }
 }
 
+/// Viscoelasticity and formulations.
+void check_prony(const Model& model, const Region& region) {
+  const Prony& prony = region.prony;
+  if (prony.g.size() != prony.tau.size())
+    throw Error(fmt::format("region '{}': prony has {} values of g and {} of tau: one of each per term", region.name,
+                            prony.g.size(), prony.tau.size()));
+  if (prony.g.empty()) return;
+  double sum = 0;
+  for (std::size_t i = 0; i < prony.g.size(); ++i) {
+    sum += prony.g[i];
+    if (!std::isfinite(prony.g[i]) || prony.g[i] <= 0)
+      throw Error(fmt::format("region '{}': prony: g = {} is not > 0", region.name, prony.g[i]));
+    if (!std::isfinite(prony.tau[i]) || prony.tau[i] <= 0)
+      throw Error(fmt::format("region '{}': prony: tau = {} is not > 0", region.name, prony.tau[i]));
+  }
+  if (sum >= 1) throw Error(fmt::format("region '{}': prony: the sum of g = {} is not < 1", region.name, sum));
+  if (model.plane == Plane::stress || is_scalar(model) || model.formulation != Formulation::standard)
+    throw Error(fmt::format("region '{}': prony is for standard elements in plane strain or 3D", region.name));
+}
+
+void check_formulation(const Model& model) {
+  const CellKind kind = element_kind(model);
+  if (model.formulation == Formulation::single_rotation && kind != CellKind::tet10)
+    throw Error(fmt::format("formulation = singleRotation is for quadraticTet, the elements are {}", name(kind)));
+  if (model.quadrature != 4 && (model.quadrature != 8 || kind != CellKind::tet10))
+    throw Error(fmt::format("quadrature = {} is not 4, or 8 for quadraticTet", model.quadrature));
+  if (model.quadrature != 4 && model.formulation != Formulation::standard)
+    throw Error("quadrature = 8 needs formulation = standard");
+  for (const Region& region : model.regions) {
+    check_prony(model, region);
+    if (model.formulation == Formulation::standard || region.elements.empty()) continue;
+    if (region.point_law)
+      throw Error(
+          fmt::format("region '{}': a material that varies inside elements needs formulation = standard", region.name));
+    if (model.formulation == Formulation::single_rotation &&
+        (region.law->name() != "linearElasticMaterial" || region.law->small_strain()))
+      throw Error(
+          fmt::format("region '{}': formulation = singleRotation is for linearElasticMaterial with "
+                      "strain = corotated; its law is {}{}",
+                      region.name, region.law->name(), region.law->small_strain() ? " of small strain" : ""));
+  }
+}
+
 /// Which model features fit together.
 void check_plane(const Model& model) {
   const CellKind kind = element_kind(model);
@@ -306,6 +349,7 @@ void Model::check() const {
   check_settings(settings);
   check_regions(*this);
   check_plane(*this);
+  check_formulation(*this);
   check_flat(*this);
   check_shapes(*this);
   check_initial(*this, "displacement", initial_displacement);

@@ -198,6 +198,8 @@ struct Model {
   std::shared_ptr<const Mesh> mesh;  ///< nodes that belong to no listed element carry no unknowns
   std::vector<Region> regions;       ///< disjoint; all elements of one kind
   Formulation formulation = Formulation::standard;
+  int quadrature =
+      4;  ///< points of standard tet10: 4 (degree 2), or 8 (degree 3: exact in the patch test where curved)
   Plane plane = Plane::strain;  ///< of triangles
   double thickness = 1;         ///< of triangles; cross-section of lines
   std::vector<PointMass> point_masses = {};
@@ -224,6 +226,9 @@ struct State {
   Points displacement, velocity, acceleration;
   Points reaction;  ///< force of the constraint on the body; zero where free
   Energies energies;
+  /// Viscoelastic regions: second Piola stress (xx yy zz xy yz xz; of small-strain laws the stress) at the quadrature
+  /// points of all elements, in solver order; zero in elastic regions. Null where every region is elastic.
+  std::shared_ptr<const std::vector<double>> history_stress = nullptr;
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.

@@ -62,6 +62,7 @@ void add_object(Registry& registry) {
                                      .doc = "the elements; or nodes: then the elements with all corners among them"});
   region.allow({"material", 1, 1});
   region.allow({"mass", 0, 1});
+  region.allow({"prony", 0, 1});
   add(registry, std::move(region));
   add(registry, holder("constraints", "What holds and what loads the body.", {{"constraint-group"}}));
   Description constraint("constraint", "constraint-group", "Constraints and loads that act together.");

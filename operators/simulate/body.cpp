@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces and places of a body.
+// Sides and places of a body.
 #include "operators/simulate/body.hpp"
 
 #include <Eigen/Geometry>
@@ -49,12 +49,14 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
 FaceTable::FaceTable(const Body& body) {
   if (dimension(body.kind) != 3) return;  // particles have no faces
   std::vector<Entry> all;
-  all.reserve(4 * body.elements.size());
+  const int sides = side_count(body.kind), count = corner_count(side_kind(body.kind));
+  all.reserve(static_cast<std::size_t>(sides) * body.elements.size());
   for (const int element : body.elements)
-    for (int local = 0; local < 4; ++local) {
-      const auto& face = tet_faces[static_cast<std::size_t>(local)];
+    for (int local = 0; local < sides; ++local) {
+      const auto side = side_nodes(body.kind, local);
       const int* nodes = body.mesh->cell(element);
-      std::array<int, 3> corners{nodes[face[0]], nodes[face[1]], nodes[face[2]]};
+      SideCorners corners{-1, -1, -1};
+      for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) corners[i] = nodes[side[i]];
       std::sort(corners.begin(), corners.end());
       all.push_back({corners, {element, local}});
     }
@@ -72,29 +74,27 @@ FaceTable::FaceTable(const Body& body) {
   });
 }
 
-const FaceTable::Entry* FaceTable::find(std::array<int, 3> corners) const {
+const FaceTable::Entry* FaceTable::find(SideCorners corners) const {
   std::sort(corners.begin(), corners.end());
   const auto at = std::lower_bound(entries_.begin(), entries_.end(), corners,
                                    [](const Entry& entry, const auto& wanted) { return entry.corners < wanted; });
   return at != entries_.end() && at->corners == corners ? &*at : nullptr;
 }
 
-fe::Face FaceTable::boundary(std::array<int, 3> corners) const {
+fe::Face FaceTable::boundary(SideCorners corners) const {
   const Entry* entry = find(corners);
   return entry != nullptr && !entry->shared ? entry->face : fe::Face{};
 }
 
-bool FaceTable::inside(std::array<int, 3> corners) const {
+bool FaceTable::inside(SideCorners corners) const {
   const Entry* entry = find(corners);
   return entry != nullptr && entry->shared;
 }
 
 std::vector<int> face_nodes(const Mesh& mesh, const fe::Face& face) {
-  const int count = mesh.kinds[static_cast<std::size_t>(face.element)] == CellKind::tet10 ? 6 : 3;
   std::vector<int> nodes;
-  for (int i = 0; i < count; ++i)
-    nodes.push_back(
-        mesh.cell(face.element)[tet_faces[static_cast<std::size_t>(face.local)][static_cast<std::size_t>(i)]]);
+  for (const int local : side_nodes(mesh.kinds[static_cast<std::size_t>(face.element)], face.local))
+    nodes.push_back(mesh.cell(face.element)[local]);
   return nodes;
 }
 

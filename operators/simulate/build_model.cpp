@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "operators/simulate/records.hpp"
+#include "solver/elements/assembly.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::simulation {
@@ -45,6 +46,10 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   Body& body = simulation.body;
   fe::Model& model = simulation.model;
   model.mesh = body.mesh;
+  model.formulation = choice.formulation;
+  model.quadrature = choice.quadrature;
+  model.plane = choice.plane;
+  model.thickness = choice.thickness;
   if (body.kind == CellKind::vertex)
     model.point_masses = build_masses(all_of(object, "region"), body, reporter);
   else
@@ -52,6 +57,7 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   body.small_strain = !model.regions.empty() &&
                       std::all_of(model.regions.begin(), model.regions.end(),
                                   [](const fe::Region& region) { return region.law && region.law->small_strain(); });
+  body.scalar = fe::is_scalar(model);
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);
   note_gravity(all_of(args, "step"), reporter);

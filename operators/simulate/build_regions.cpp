@@ -7,6 +7,7 @@
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/selection.hpp"
+#include "solver/materials/diffusion.hpp"
 #include "solver/registry.hpp"
 
 namespace msml::simulation {
@@ -120,6 +121,8 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
                       .law = make<std::shared_ptr<const fe::Law>>(*material),
                       .density = density(*records[i]),
                       .elements = owners.elements(i)};
+    if (material->tag() == "diffusionMaterial") region.point_law = fe::diffusion_field(*material);
+    if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }
   return regions;

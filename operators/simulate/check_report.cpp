@@ -66,6 +66,14 @@ std::string balance_text(const fe::Check& check, bool dynamic) {
   return text + line("balance of these", fmt::format("{:.2e}", check.balance));
 }
 
+std::string shape_text(const Simulation& simulation, const WorstShape& worst) {
+  if (worst.angle_element < 0) return "";
+  return line(dimension(simulation.body.kind) == 3 ? "smallest dihedral angle" : "smallest angle",
+              fmt::format("{:.3g} degrees{}", worst.smallest_angle, element_at(simulation, worst.angle_element))) +
+         line("smallest radius ratio",
+              fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
+}
+
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
@@ -90,10 +98,7 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
       line("smallest J", fmt::format("{:.4g}{}", check.smallest_J, element_at(simulation, check.smallest_J_element)));
   text += line("largest strain", fmt::format("{:.3g}", check.largest_strain));
   text += line("largest rotation", fmt::format("{:.3g} degrees", check.largest_rotation));
-  text += line("smallest dihedral angle",
-               fmt::format("{:.3g} degrees{}", worst.smallest_angle, element_at(simulation, worst.angle_element)));
-  text += line("smallest radius ratio",
-               fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
+  text += shape_text(simulation, worst);
   if (check.lowest_period > 0)
     text += line("lowest period", fmt::format("{:.4g}, damped by {:.3g} % a cycle by the time step",
                                               check.lowest_period, 100 * check.damped_per_cycle));

@@ -16,14 +16,14 @@ constexpr double tolerable_damping = 0.05;  // amplitude lost per cycle of the l
 constexpr double sliver_angle = 1;          // degrees
 
 void warn_of_locking(const Simulation& simulation, std::vector<std::string>& warnings) {
-  if (simulation.body.kind != CellKind::tet4) return;
+  const bool plane = simulation.body.kind == CellKind::tri3 && simulation.model.plane == fe::Plane::strain;
+  if (simulation.body.kind != CellKind::tet4 && !plane) return;
   for (const fe::Region& region : simulation.model.regions)
     if (region.law->poisson_ratio() >= locking_ratio)
-      warnings.push_back(
-          fmt::format("region '{}' has poissonRatio = {}: linear tetrahedra lock (are too stiff) from {}. Use "
-                      "quadraticTet, with the "
-                      "mesh from ConvertLinearToQuadraticTetrahedralMesh",
-                      region.name, region.law->poisson_ratio(), locking_ratio));
+      warnings.push_back(fmt::format(
+          "region '{}' has poissonRatio = {}: linear {} lock (are too stiff) from {}. Use {}", region.name,
+          region.law->poisson_ratio(), plane ? "triangles" : "tetrahedra", locking_ratio,
+          plane ? "quadraticTriangle" : "quadraticTet, with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
 }
 
 /// Implicit Euler damps a period T by 1 - exp(-2 pi^2 dt/T) per cycle for small dt/T.
@@ -59,10 +59,10 @@ std::vector<std::string> check_warnings(const Simulation& simulation, const fe::
         "conjugate gradients missed linearTolerance, so the matrix was factorised from then on. Use "
         "linearSolver = \"direct\", or improve the mesh");
   if (worst.smallest_angle < sliver_angle)
-    warnings.push_back(fmt::format(
-        "element {} at {} is a sliver: a dihedral angle of {:.3g} degrees. Improve the mesh, "
-        "for example with exude = \"true\"",
-        worst.angle_element, place(centroid(*simulation.body.mesh, worst.angle_element)), worst.smallest_angle));
+    warnings.push_back(fmt::format("element {} at {} is a sliver: {} angle of {:.3g} degrees. Improve the mesh{}",
+                                   worst.angle_element, place(centroid(*simulation.body.mesh, worst.angle_element)),
+                                   dimension(simulation.body.kind) == 3 ? "a dihedral" : "an", worst.smallest_angle,
+                                   dimension(simulation.body.kind) == 3 ? ", for example with exude = \"true\"" : ""));
   return warnings;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dihedral angles and radius ratios of tetrahedra.
+// Angles and radius ratios of tetrahedra and triangles.
 #include "operators/simulate/element_quality.hpp"
 
 #include <Eigen/Geometry>
@@ -34,13 +34,28 @@ Shape tetrahedron_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3&
   return shape;
 }
 
+Shape triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto angle = [](const Vec3& p, const Vec3& q, const Vec3& r) {
+    return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p)) * 180 / EIGEN_PI;
+  };
+  Shape shape;
+  shape.smallest_angle = std::min({angle(a, b, c), angle(b, c, a), angle(c, a, b)});
+  const double p = (b - a).norm(), q = (c - b).norm(), r = (a - c).norm();
+  const double area = (b - a).cross(c - a).norm() / 2;
+  // 2 r_in / R_out = 2 (2 A / (p + q + r)) (4 A / (p q r))
+  if (p * q * r > 0) shape.radius_ratio = 16 * area * area / ((p + q + r) * p * q * r);
+  return shape;
+}
+
 WorstShape worst_shape(const Body& body) {
   WorstShape worst;
+  if (dimension(body.kind) < 2) return worst;
   for (const int id : body.elements) {
     if (dimension(body.kind) != 3) break;
     const int* nodes = body.mesh->cell(id);
     const auto corner = [&](int i) -> Vec3 { return body.mesh->points.row(nodes[i]).transpose(); };
-    const Shape shape = tetrahedron_shape(corner(0), corner(1), corner(2), corner(3));
+    const Shape shape = dimension(body.kind) == 3 ? tetrahedron_shape(corner(0), corner(1), corner(2), corner(3))
+                                                  : triangle_shape(corner(0), corner(1), corner(2));
     if (shape.smallest_angle < worst.smallest_angle) {
       worst.smallest_angle = shape.smallest_angle;
       worst.angle_element = id;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The worst tetrahedron of a body.
+// The worst element of a body.
 #pragma once
 #include "operators/simulate/body.hpp"
 
@@ -15,9 +15,12 @@ struct Shape {
 /// (24 V R)^2 = (p+q+r)(p+q-r)(p-q+r)(-p+q+r), where p, q, r are the products of opposite edges.
 Shape tetrahedron_shape(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
-/// The worst of the body in its reference positions, corners only.
+/// From the three corners: the smallest angle (60 degrees in the regular one) and 2 r_in / R_out.
+Shape triangle_shape(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// The worst of the body in its reference positions, corners only. Lines have no shape: 180 degrees and 1.
 struct WorstShape {
-  double smallest_angle = 180;
+  double smallest_angle = 180;  ///< dihedral of tetrahedra
   int angle_element = -1;
   double radius_ratio = 1;
   int ratio_element = -1;

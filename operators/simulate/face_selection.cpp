@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles and nodes turned into boundary faces of a body.
+// Triangles (lines, vertices) and nodes turned into the sides of a body that loads act on.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -10,7 +10,14 @@
 namespace msml::simulation {
 namespace {
 
-bool is_triangle(CellKind kind) { return kind == CellKind::tri3 || kind == CellKind::tri6; }
+/// True for cells that can be a side of the body's elements: triangles, lines of a plane body, vertices of a line.
+bool is_side(CellKind kind, const Body& body) { return dimension(kind) == dimension(body.kind) - 1; }
+
+/// "triangle", "line" or "vertex".
+const char* side_noun(const Body& body) {
+  constexpr const char* nouns[] = {"", "vertex", "line", "triangle"};
+  return nouns[dimension(body.kind)];
+}
 
 /// Matches triangles with faces of a body, by node ids first where they index the body's points, then by place.
 class Matcher {
@@ -37,14 +44,16 @@ class Matcher {
  private:
   fe::Face match(int cell) {
     const int* nodes = triangles_.cell(cell);
-    const std::array<int, 3> corners{nodes[0], nodes[1], nodes[2]};
+    const auto count = static_cast<std::size_t>(dimension(body_.kind));
+    SideCorners corners{-1, -1, -1};
+    std::copy_n(nodes, count, corners.begin());
     if (shares_points_) {
       if (const fe::Face face = table_.boundary(corners); face.element >= 0) return face;
       if (table_.inside(corners)) return inside_.push_back(cell), fe::Face{};
     }
     if (!places_) places_.emplace(body_);
-    std::array<std::vector<int>, 3> candidates;
-    for (std::size_t i = 0; i < 3; ++i) candidates[i] = places_->at(triangles_.points.row(corners[i]).transpose());
+    std::array<std::vector<int>, 3> candidates{{{-1}, {-1}, {-1}}};
+    for (std::size_t i = 0; i < count; ++i) candidates[i] = places_->at(triangles_.points.row(corners[i]).transpose());
     bool between = false;
     for (const int a : candidates[0])
       for (const int b : candidates[1])
@@ -73,13 +82,13 @@ class Matcher {
   std::map<std::pair<int, int>, int> taken_;  ///< face -> the cell that named it
 };
 
-void check_triangles(const Record& record, const IndexSet& set, const Mesh& mesh) {
+void check_sides(const Record& record, const IndexSet& set, const Mesh& mesh, const Body& body) {
   for (const int id : set.ids) {
     const CellKind kind = mesh.kinds[static_cast<std::size_t>(id)];
-    if (!is_triangle(kind))
-      refuse(record, fmt::format("indices names cell {}, which is a {}; triangle cells are wanted, for example from "
+    if (!is_side(kind, body))
+      refuse(record, fmt::format("indices names cell {}, which is a {}; {} cells are wanted, for example from "
                                  "ComputeIndicesFromBoxROI with select=\"surfaceElements\"",
-                                 id, name(kind)));
+                                 id, name(kind), side_noun(body)));
   }
 }
 
@@ -94,7 +103,8 @@ std::vector<fe::Face> faces_between(const IndexSet& set, const Body& body) {
   std::vector<fe::Face> faces;
   for (const fe::Face& face : table.boundary_faces()) {
     const auto nodes = face_nodes(*body.mesh, face);
-    if (std::all_of(nodes.begin(), nodes.begin() + 3, [&](int node) { return in[static_cast<std::size_t>(node)]; }))
+    if (std::all_of(nodes.begin(), nodes.begin() + dimension(body.kind),
+                    [&](int node) { return in[static_cast<std::size_t>(node)]; }))
       faces.push_back(face);
   }
   return faces;
@@ -113,7 +123,7 @@ FaceSelection select_faces(const Record& record, const Body& body) {
                                  counted(static_cast<int>(set.ids.size()), "node"), bounds(body)));
     return selection;
   }
-  check_triangles(record, set, *body.mesh);
+  check_sides(record, set, *body.mesh, body);
   return {Matcher(record, body, *body.mesh, true).match(set.ids), true};
 }
 
@@ -128,13 +138,15 @@ FaceSelection select_faces_on(const Record& record, const Body& body, const Mesh
     cells.clear();
     for (int c = 0; c < surface.cell_count(); ++c) {
       const int* nodes = surface.cell(c);
-      if (is_triangle(surface.kinds[static_cast<std::size_t>(c)]) &&
-          std::all_of(nodes, nodes + 3, [&](int node) { return in[static_cast<std::size_t>(node)]; }))
+      if (is_side(surface.kinds[static_cast<std::size_t>(c)], body) &&
+          std::all_of(nodes, nodes + dimension(body.kind),
+                      [&](int node) { return in[static_cast<std::size_t>(node)]; }))
         cells.push_back(c);
     }
-    if (cells.empty()) refuse(record, "no triangle of mesh has all its corners among the nodes in indices");
+    if (cells.empty())
+      refuse(record, fmt::format("no {} of mesh has all its corners among the nodes in indices", side_noun(body)));
   } else {
-    check_triangles(record, set, surface);
+    check_sides(record, set, surface, body);
   }
   return {Matcher(record, body, surface, false).match(cells), set.kind != Indexed::nodes};
 }

@@ -10,6 +10,7 @@ namespace {
 std::vector<FieldFacts> with_nodal() {
   std::vector<FieldFacts> all{
       {"displacement", 3, true, "x - X"},
+      {"value", 1, true, "the unknown of a scalar problem, written in the place of displacement"},
       {"velocity", 3, true, "rate of the displacement"},
       {"acceleration", 3, true, "rate of the velocity"},
       {"reaction", 3, true, "force of the constraints on the body; zero where it is free"},

@@ -44,19 +44,6 @@ Description future(const char* tag, const char* category, const char* doc, const
   return description;
 }
 
-void add_meshes(std::vector<Description>& tags) {
-  const std::vector<Attribute> attributes{{"mesh", Type::mesh, "the mesh"},
-                                          {"formulation", Type::text, "how the element is computed"},
-                                          {"plane", Type::text, "strain or stress"},
-                                          {"thickness", Type::number, "of a plane body"}};
-  const char* solids = "bodies are meshes of linearTet or quadraticTet";
-  tags.push_back(future("triangularTet", "mesh", "MSML's name of a body of triangles.", solids, attributes));
-  tags.push_back(future("linearTriangle", "mesh", "Linear triangles in the plane.", solids, attributes));
-  tags.push_back(future("quadraticTriangle", "mesh", "Quadratic triangles in the plane.", solids, attributes));
-  tags.push_back(future("linearLine", "mesh", "Linear elements on a line.", solids, attributes));
-  tags.push_back(future("quadraticLine", "mesh", "Quadratic elements on a line.", solids, attributes));
-}
-
 void add_materials(std::vector<Description>& tags) {
   const char* instead = "take linearElasticMaterial, stVenantKirchhoffMaterial or neoHookeanMaterial";
   tags.push_back(future(
@@ -71,8 +58,6 @@ void add_materials(std::vector<Description>& tags) {
   const std::vector<Attribute> fibres{{"fiber", Type::text, "direction"}, {"fiber2", Type::text, "second direction"}};
   for (const char* tag : {"transverselyIsotropicMaterial", "holzapfelGasserOgdenMaterial", "guccioneMaterial"})
     tags.push_back(future(tag, "material", "A law with fibres.", instead, fibres));
-  tags.push_back(future("diffusionMaterial", "material", "Coefficient of a scalar problem.", instead,
-                        {{"coefficient", Type::number, "of the gradient"}}));
 }
 
 void add_msml_constraints(std::vector<Description>& tags) {
@@ -97,21 +82,12 @@ void add_msml_constraints(std::vector<Description>& tags) {
       {{"surface", Type::mesh, "the surface"}, {"exportFile", Type::text, "file"}, {"forStep", Type::text, "step"}}));
 }
 
-void add_constraints(std::vector<Description>& tags) {
-  const Attribute indices{"indices", Type::index_set, "where it acts"}, step{"forStep", Type::text, "step"};
-  for (const char* tag : {"source", "fixedValue", "flux"})
-    tags.push_back(future(tag, "constraint", "Of a scalar problem.", "there are no scalar problems",
-                          {indices, {"value", Type::number, "its value"}, step}));
-}
-
 }  // namespace
 
 std::vector<Description> future_tags() {
   std::vector<Description> tags;
-  add_meshes(tags);
   add_materials(tags);
   add_msml_constraints(tags);
-  add_constraints(tags);
   return tags;
 }
 

@@ -8,30 +8,99 @@ namespace {
 
 constexpr const char* converter = "ConvertLinearToQuadraticTetrahedralMesh";
 
-void check_kind(const Record& record, const Mesh& mesh, CellKind wanted) {
-  const CellKind other = wanted == CellKind::tet4 ? CellKind::tet10 : CellKind::tet4;
-  const int wrong = mesh.count(other);
-  if (wrong > 0 && wanted == CellKind::tet10)
-    refuse(record, fmt::format("the mesh has {} tet4 cells, but tet10 are needed; convert it with {}",
-                               with_commas(wrong), converter));
-  if (wrong > 0)
-    refuse(record,
-           fmt::format("the mesh has {} tet10 cells, but tet4 are needed; use quadraticTet, or the mesh before {}",
-                       with_commas(wrong), converter));
-  if (!mesh.has(wanted))
-    refuse(record, fmt::format("the mesh has no tetrahedra ({}); fill a surface with CGALMeshVolumeFromSurface first",
-                               mesh.summary()));
+/// The linear kind for a quadratic one, and the other way round.
+CellKind other_order(CellKind kind) {
+  constexpr CellKind linear[] = {CellKind::vertex, CellKind::line2, CellKind::tri3, CellKind::tet4};
+  constexpr CellKind quadratic[] = {CellKind::vertex, CellKind::line3, CellKind::tri6, CellKind::tet10};
+  return kind == linear[dimension(kind)] ? quadratic[dimension(kind)] : linear[dimension(kind)];
 }
 
-Factory<MeshChoice> tetrahedra(const char* name, CellKind kind, const std::string& doc) {
-  Factory<MeshChoice> tag(name, "mesh", doc);
+void check_kind(const Record& record, const Mesh& mesh, CellKind wanted) {
+  constexpr const char* nouns[] = {"", "lines", "triangles", "tetrahedra"};
+  constexpr const char* makers[] = {"", "make them with GenerateSegmentMesh", "make them with GenerateRectangleMesh",
+                                    "fill a surface with CGALMeshVolumeFromSurface first"};
+  constexpr const char* quadratic_tags[] = {"", "quadraticLine", "quadraticTriangle", "quadraticTet"};
+  const CellKind other = other_order(wanted);
+  const int wrong = mesh.count(other);
+  const bool up = node_count(wanted) > node_count(other), solid = dimension(wanted) == 3;
+  if (wrong > 0 && up)
+    refuse(record, fmt::format("the mesh has {} {} cells, but {} are needed{}", with_commas(wrong), name(other),
+                               name(wanted), solid ? fmt::format("; convert it with {}", converter) : ""));
+  if (wrong > 0)
+    refuse(record, fmt::format("the mesh has {} {} cells, but {} are needed; use {}{}", with_commas(wrong), name(other),
+                               name(wanted), quadratic_tags[dimension(wanted)],
+                               solid ? fmt::format(", or the mesh before {}", converter) : ""));
+  if (!mesh.has(wanted))
+    refuse(record, fmt::format("the mesh has no {} ({}); {}", nouns[dimension(wanted)], mesh.summary(),
+                               makers[dimension(wanted)]));
+}
+
+struct FormulationName {
+  const char* name;
+  fe::Formulation formulation;
+  const char* doc;
+};
+
+/// What `formulation` may say for a kind of element; the first is the default.
+std::vector<FormulationName> formulations(CellKind kind) {
+  std::vector<FormulationName> found{{"standard", fe::Formulation::standard, "standard: isoparametric"}};
+  if (kind == CellKind::tet10)
+    found.push_back({"singleRotation", fe::Formulation::single_rotation,
+                     "singleRotation: linear elasticity turned with the four corners, stiffness made once (tet10SR)"});
+  return found;
+}
+
+Key<std::string> add_formulation(Description& tag, CellKind kind) {
+  std::vector<std::string> names;
+  std::string doc;
+  for (const FormulationName& each : formulations(kind)) {
+    names.emplace_back(each.name);
+    doc += (doc.empty() ? "" : "; ") + std::string(each.doc);
+  }
+  return tag.parameter<std::string>("formulation", {.fallback = names.front(), .choices = names, .doc = doc});
+}
+
+fe::Formulation formulation_of(CellKind kind, const std::string& wanted) {
+  for (const FormulationName& each : formulations(kind))
+    if (wanted == each.name) return each.formulation;
+  return fe::Formulation::standard;
+}
+
+Factory<MeshChoice> kind_of_mesh(const char* tag_name, CellKind kind, const std::string& doc) {
+  Factory<MeshChoice> tag(tag_name, "mesh", doc);
   const auto mesh = tag.input<Mesh>("mesh", std::string("its ") + msml::name(kind) +
                                                 " cells are the body; other cells are carried along to the results");
-  tag.parameter<std::string>("formulation",
-                             {.fallback = "standard", .choices = {"standard"}, .doc = "standard: isoparametric"});
+  const auto formulation = add_formulation(tag, kind);
+  Key<std::string> plane, quadrature;
+  if (kind == CellKind::tet10)
+    quadrature = tag.parameter<std::string>(
+        "quadrature", {.fallback = "4",
+                       .choices = {"4", "8"},
+                       .doc = "points: 4 integrate straight elements exactly, 8 also the stresses of curved ones"});
+  Key<double> thickness;
+  if (dimension(kind) == 2) {
+    plane = tag.parameter<std::string>("plane", {.fallback = "strain",
+                                                 .choices = {"strain", "stress"},
+                                                 .doc = "strain: held along z; stress: free to change its thickness"});
+    tag.note("The triangles lie in a plane of constant z and run counter-clockwise seen from +z.");
+  }
+  if (dimension(kind) < 3)
+    thickness = tag.parameter(dimension(kind) == 2 ? "thickness" : "crossSection",
+                              {.unit = dimension(kind) == 2 ? "length" : "length^2",
+                               .range = positive(),
+                               .fallback = 1.0,
+                               .doc = dimension(kind) == 2 ? "along z; forces are for all of it"
+                                                           : "area across x; forces are for all of it"});
+  if (dimension(kind) == 1)
+    tag.note("The lines lie along x and do not strain across it: their stiffness is lambda + 2 mu.");
   tag.build([=](const Record& record) {
     check_kind(record, record[mesh], kind);
-    return MeshChoice{record.share(mesh), kind};
+    MeshChoice choice{
+        .mesh = record.share(mesh), .kind = kind, .formulation = formulation_of(kind, record[formulation])};
+    if (kind == CellKind::tet10 && record[quadrature] == "8") choice.quadrature = 8;
+    if (dimension(kind) == 2 && record[plane] == "stress") choice.plane = fe::Plane::stress;
+    if (dimension(kind) < 3) choice.thickness = record[thickness];
+    return choice;
   });
   return tag;
 }
@@ -65,9 +134,16 @@ Factory<MeshChoice> particles() {
 }  // namespace
 
 std::vector<Factory<MeshChoice>> mesh_kinds() {
-  return {tetrahedra("linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."),
-          tetrahedra("quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points."),
-          particles()};
+  return {
+      kind_of_mesh("linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."),
+      kind_of_mesh("quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points."),
+      kind_of_mesh("linearTriangle", CellKind::tri3, "Linear triangles in the plane: constant strain, one point."),
+      kind_of_mesh("quadraticTriangle", CellKind::tri6, "Quadratic triangles in the plane: three points."),
+      kind_of_mesh("triangularTet", CellKind::tri3, "MSML's older name of linearTriangle."),
+      kind_of_mesh("linearLine", CellKind::line2, "Linear elements on a line along x: one point."),
+      kind_of_mesh("quadraticLine", CellKind::line3, "Quadratic elements on a line along x: two points."),
+      particles(),
+  };
 }
 
 Factory<double> mass() {

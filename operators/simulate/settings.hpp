@@ -16,15 +16,22 @@ namespace msml::simulation {
 struct MeshChoice {
   std::shared_ptr<const Mesh> mesh;
   CellKind kind = CellKind::tet4;
+  fe::Formulation formulation = fe::Formulation::standard;
+  int quadrature = 4;
+  fe::Plane plane = fe::Plane::strain;
+  double thickness = 1;  ///< of triangles; cross-section of lines
 };
-/// linearTet and quadraticTet. Building throws Error unless all tetrahedra of the mesh are of the kind, and there are
-/// some.
+/// linearTet, quadraticTet, linearTriangle, quadraticTriangle, triangularTet, linearLine and quadraticLine. Building
+/// throws Error unless all cells of that dimension are of the kind, and there are some.
 std::vector<Factory<MeshChoice>> mesh_kinds();
 
 /// The tag `mass`: mass per reference volume.
 Factory<double> mass();
 /// The tag `pointMass`: the mass of each particle of a region.
 Factory<double> point_mass();
+
+/// The tag `prony`: a region's viscoelasticity.
+Factory<fe::Prony> prony();
 
 /// Settings of the solver; what is accepted for old scenes is noted. `threads` is used where the scene says nothing.
 using SettingsBuilder = std::function<fe::Settings(Reporter&, int threads)>;

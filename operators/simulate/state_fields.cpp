@@ -45,8 +45,16 @@ std::vector<double> pressure_of(const std::vector<double>& stress) {
   return result;
 }
 
+std::vector<double> StateFields::scalar() const {
+  std::vector<double> values(static_cast<std::size_t>(body_.mesh->point_count()), 0);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (body_.solid[i]) values[i] = state_.displacement(static_cast<Eigen::Index>(i), 0);
+  return values;
+}
+
 Points StateFields::displacement() const {
   Points moved = Points::Zero(body_.mesh->points.rows(), 3);
+  if (body_.scalar) return moved;
   for (Eigen::Index i = 0; i < moved.rows(); ++i)
     if (body_.solid[static_cast<std::size_t>(i)]) moved.row(i) = state_.displacement.row(i);
   return moved;
@@ -97,6 +105,7 @@ std::vector<double> StateFields::recovered(const std::string& name) {
 
 std::vector<double> StateFields::nodal(const std::string& name) {
   if (name == "displacement") return rows(displacement());
+  if (name == "value") return scalar();
   if (name == "velocity") return rows(state_.velocity);
   if (name == "acceleration") return rows(state_.acceleration);
   if (name == "reaction") return rows(state_.reaction);
@@ -110,6 +119,7 @@ Field StateFields::field(const std::string& name) {
 
 void StateFields::add_to(Mesh& mesh, const std::string& name) {
   if (name == "region") return;
+  if (name == "displacement" && body_.scalar) return add_to(mesh, "value");
   (facts_of(name).nodal ? mesh.point_fields : mesh.cell_fields).push_back(field(name));
 }
 

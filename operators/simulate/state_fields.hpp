@@ -21,11 +21,12 @@ class StateFields {
   /// A field by its name, one of field_names() but "region": values at all points or all cells of the body's mesh.
   Field field(const std::string& name);
   /// Adds a field to the points or cells of a mesh with the body's points and cells. "region" adds nothing, since
-  /// meshes carry it anyway.
+  /// meshes carry it anyway; scalar problems add "value" in the place of "displacement".
   void add_to(Mesh& mesh, const std::string& name);
 
  private:
   Points displacement() const;
+  std::vector<double> scalar() const;
   const fe::ElementResults& law();
   const fe::ElementResults& tensors();
   std::vector<double> J() const;

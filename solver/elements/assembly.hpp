@@ -70,6 +70,8 @@ class Elements {
   /// For materials with a history: called before the increments of a time step of dt, and when its end is accepted.
   virtual void begin_step(double /*dt*/) {}
   virtual void end_step(const Vector& /*u*/) {}
+  /// Their stress at the end of the last step, see State::history_stress; null where all regions are elastic.
+  virtual std::shared_ptr<const std::vector<double>> history_stress() const { return nullptr; }
   virtual const Numbering& numbering() const = 0;
   virtual const PatternPtr& pattern() const = 0;
 };

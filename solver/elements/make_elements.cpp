@@ -4,6 +4,7 @@
 
 #include "solver/elements/no_elements.hpp"
 #include "solver/elements/simplex_elements.hpp"
+#include "solver/elements/single_rotation.hpp"
 
 namespace msml::fe {
 namespace {
@@ -23,6 +24,7 @@ std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
     case CellKind::tet4:
       return std::make_unique<SimplexElements<3, 4>>(model);
     default:
+      if (model.quadrature == 8) return std::make_unique<SimplexElements<3, 10, 8>>(model);
       return std::make_unique<SimplexElements<3, 10>>(model);
   }
 }
@@ -46,6 +48,9 @@ int components(const Model& model) {
   return is_scalar(model) ? 1 : dimension == 0 ? 3 : dimension;
 }
 
-std::unique_ptr<Elements> make_elements(const Model& model) { return standard_elements(model, element_kind(model)); }
+std::unique_ptr<Elements> make_elements(const Model& model) {
+  if (model.formulation == Formulation::single_rotation) return make_single_rotation_elements(model);
+  return standard_elements(model, element_kind(model));
+}
 
 }  // namespace msml::fe

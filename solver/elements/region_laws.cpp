@@ -2,10 +2,14 @@
 // Picks the laws of elements.
 #include "solver/elements/region_laws.hpp"
 
+#include "solver/materials/plane_stress.hpp"
+
 namespace msml::fe {
 namespace {
 
-std::shared_ptr<const Law> in_plane(const Model&, std::shared_ptr<const Law> law) { return law; }
+std::shared_ptr<const Law> in_plane(const Model& model, std::shared_ptr<const Law> law) {
+  return model.plane == Plane::stress && law->components() > 1 ? make_plane_stress(std::move(law)) : law;
+}
 
 }  // namespace
 

@@ -4,101 +4,13 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "solver/elements/mass.hpp"
+#include "solver/elements/simplex_kernels.hpp"
 
 namespace msml::fe {
-namespace {
-
-constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
-
-/// values[3 n] for the nodes a of eight elements.
-template <class Batch>
-Lanes gather(const Batch& batch, int a, const double* values) {
-  alignas(Lanes) double out[lanes];
-  for (int lane = 0; lane < lanes; ++lane) out[lane] = values[3 * batch.node[lane][a]];
-  Lanes result;
-  std::memcpy(&result, out, sizeof result);
-  return result;
-}
-
-/// a . b of two vectors of `dimension` lanes.
-template <int dimension>
-Lanes inner(const Lanes* a, const Lanes* b) {
-  Lanes sum = a[0] * b[0];
-  for (int k = 1; k < dimension; ++k) sum += a[k] * b[k];
-  return sum;
-}
-
-/// force_a += w P g_a.
-template <int dimension, int nodes>
-void add_force(const Tensor<Lanes>& P, Lanes w, const SimplexGradients<dimension, nodes>& gradients,
-               SimplexResult<dimension, nodes>& result) {
-  for (int a = 0; a < nodes; ++a)
-    for (int i = 0; i < dimension; ++i) result.force[a][i] += w * inner<dimension>(P.c + 3 * i, gradients.g[a]);
-}
-
-/// block_ab(i, j) += w sum_kl g_a,k A_(ik)(jl) g_b,l.
-template <int dimension, int nodes>
-void add_stiffness(const Lanes* A, Lanes w, const SimplexGradients<dimension, nodes>& gradients,
-                   SimplexResult<dimension, nodes>& result) {
-  for (int b = 0; b < nodes; ++b) {
-    Lanes scaled[dimension];
-    for (int l = 0; l < dimension; ++l) scaled[l] = w * gradients.g[b][l];
-    Lanes half[dimension][dimension][dimension];  // A contracted with g_b: i, j, k
-    for (int i = 0; i < dimension; ++i)
-      for (int k = 0; k < dimension; ++k)
-        for (int j = 0; j < dimension; ++j) {
-          Lanes sum = A[packed(3 * i + k, 3 * j)] * scaled[0];
-          for (int l = 1; l < dimension; ++l) sum += A[packed(3 * i + k, 3 * j + l)] * scaled[l];
-          half[i][j][k] = sum;
-        }
-    for (int a = 0; a <= b; ++a) {
-      Lanes* block = result.block[packed(b, a)];
-      for (int i = 0; i < dimension; ++i)
-        for (int j = 0; j < dimension; ++j) block[dimension * i + j] += inner<dimension>(gradients.g[a], half[i][j]);
-    }
-  }
-}
-
-template <int dimension, int nodes, class Batch>
-void scatter_force(const Batch& batch, const SimplexResult<dimension, nodes>& result, Vector& force) {
-  for (int lane = 0; lane < batch.count; ++lane)
-    for (int a = 0; a < nodes; ++a) {
-      double* f = force.data() + 3 * batch.node[lane][a];
-      for (int i = 0; i < dimension; ++i) f[i] += result.force[a][i][lane];
-    }
-}
-
-template <int dimension, int nodes, class Batch>
-void scatter_stiffness(const Batch& batch, const SimplexResult<dimension, nodes>& result, BlockMatrix& matrix) {
-  for (int lane = 0; lane < batch.count; ++lane)
-    for (int b = 0; b < nodes; ++b)
-      for (int a = 0; a <= b; ++a) {
-        const Lanes* block = result.block[packed(b, a)];
-        double* upper = matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][a * nodes + b]);
-        double* lower = matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][b * nodes + a]);
-        for (int i = 0; i < dimension; ++i)
-          for (int j = 0; j < dimension; ++j) upper[3 * i + j] += block[dimension * i + j][lane];
-        if (a == b) continue;
-        for (int i = 0; i < dimension; ++i)
-          for (int j = 0; j < dimension; ++j) lower[3 * j + i] += block[dimension * i + j][lane];
-      }
-}
-
-void merge(Assembled& sum, const Assembled& part) {
-  sum.energy += part.energy;
-  sum.finite = sum.finite && part.finite;
-  if (part.smallest_J < sum.smallest_J) {
-    sum.smallest_J = part.smallest_J;
-    sum.smallest_J_element = part.smallest_J_element;
-  }
-}
-
-}  // namespace
-
 template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
@@ -120,7 +32,8 @@ SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
 
 template <int dimension, int nodes, int count>
 Rule<dimension> SimplexElements<dimension, nodes, count>::rule() {
-  return stiffness_rule<dimension, nodes>();
+  if constexpr (count == stiffness_points<dimension, nodes>) return stiffness_rule<dimension, nodes>();
+  return rule_of_size<dimension>(2);
 }
 
 template <int dimension, int nodes, int count>
@@ -166,24 +79,32 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
   const auto first = numbering_.elements.begin() + batch.first;
   const std::vector<int> elements(first, first + batch.count);
   batch.laws = laws_of(model, region, elements, positions);
+  if (!region.prony.g.empty())
+    batch.history = PronyHistory(region.prony, count, batch.laws.laws.front()->small_strain());
 }
 
 template <int dimension, int nodes, int count>
-Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q, const Vector& u,
-                                                             ShapeGradients& g) const {
+void SimplexElements<dimension, nodes, count>::shape_gradients(const Batch& batch, int q, ShapeGradients& g) const {
   const Lanes* inverse = batch.points[q].inverse;
-  Gradients H{};
   for (int a = 0; a < nodes; ++a) {
     const auto& r = reference_gradients_[static_cast<std::size_t>(q)][static_cast<std::size_t>(a)];
     for (int k = 0; k < dimension; ++k) {
       g.g[a][k] = r[0] * inverse[k];
       for (int d = 1; d < dimension; ++d) g.g[a][k] += r[static_cast<std::size_t>(d)] * inverse[dimension * d + k];
     }
+  }
+}
+
+template <int dimension, int nodes, int count>
+Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q, const Vector& u,
+                                                             ShapeGradients& g) const {
+  shape_gradients(batch, q, g);
+  Gradients H{};
+  for (int a = 0; a < nodes; ++a)
     for (int i = 0; i < dimension; ++i) {
       const Lanes value = gather(batch, a, u.data() + i);
       for (int k = 0; k < dimension; ++k) H(i, k) += value * g.g[a][k];
     }
-  }
   if (dimension == 2) batch.laws.complete(static_cast<std::size_t>(q), H);
   return H;
 }
@@ -196,6 +117,7 @@ Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch
   Response response[count];
   for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, u, g[q]);
   batch.laws.evaluate(want, {H, count}, {response, count});
+  if (!batch.history.empty()) batch.history.apply(want, {H, count}, {response, count});
 
   Assembled found;
   SimplexResult<dimension, nodes> result{};
@@ -273,11 +195,47 @@ std::vector<ElementPoints> SimplexElements<dimension, nodes, count>::points(cons
   return found;
 }
 
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::begin_step(double dt) {
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    if (!batches_[b].history.empty()) batches_[b].history.begin_step(dt);
+  });
+}
+
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    Batch& batch = batches_[b];
+    if (batch.history.empty()) return;
+    ShapeGradients g;
+    Gradients H[count];
+    Response response[count];
+    for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, u, g);
+    batch.laws.evaluate(Want::stress, {H, count}, {response, count});
+    batch.history.end_step({H, count}, {response, count});
+  });
+}
+
+template <int dimension, int nodes, int count>
+std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_stress() const {
+  const bool any = std::any_of(batches_.begin(), batches_.end(), [](const Batch& b) { return !b.history.empty(); });
+  if (!any) return nullptr;
+  auto values = std::make_shared<std::vector<double>>(numbering_.elements.size() * count * 6, 0.0);
+  for (const Batch& batch : batches_)
+    for (std::size_t q = 0; q < batch.history.stress().size(); ++q)
+      for (int lane = 0; lane < batch.count; ++lane)
+        for (std::size_t k = 0; k < 6; ++k)
+          (*values)[(static_cast<std::size_t>(batch.first + lane) * count + q) * 6 + k] =
+              batch.history.stress()[q].c[k][lane];
+  return values;
+}
+
 template class SimplexElements<1, 2>;
 template class SimplexElements<1, 3>;
 template class SimplexElements<2, 3>;
 template class SimplexElements<2, 6>;
 template class SimplexElements<3, 4>;
 template class SimplexElements<3, 10>;
+template class SimplexElements<3, 10, 8>;
 
 }  // namespace msml::fe

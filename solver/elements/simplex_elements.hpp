@@ -3,8 +3,10 @@
 #pragma once
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
+#include "solver/elements/prony_history.hpp"
 #include "solver/elements/region_laws.hpp"
 #include "solver/elements/shapes.hpp"
+#include "solver/elements/simplex_kernels.hpp"
 
 namespace msml::fe {
 
@@ -21,19 +23,7 @@ struct SimplexBatch {
   int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
   Point points[rule_points];
   BatchLaws laws;
-};
-
-/// dN_a/dX of eight elements at one point.
-template <int dimension, int nodes>
-struct SimplexGradients {
-  Lanes g[nodes][dimension];
-};
-
-/// Internal force and stiffness of eight elements. Blocks (a, b), a <= b, at b(b+1)/2 + a; dimension x dimension each.
-template <int dimension, int nodes>
-struct SimplexResult {
-  Lanes force[nodes][dimension];
-  Lanes block[nodes * (nodes + 1) / 2][dimension * dimension];
+  PronyHistory history;  ///< empty where elastic
 };
 
 /// Lines lie along x (uniaxial strain: F = diag(F_11, 1, 1)), triangles in a plane of constant z. The gradient has
@@ -45,12 +35,20 @@ class SimplexElements final : public Elements {
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
   std::vector<ElementPoints> points(const Vector& u) const override;
+  void begin_step(double dt) override;
+  void end_step(const Vector& u) override;
+  std::shared_ptr<const std::vector<double>> history_stress() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
- private:
   using Batch = SimplexBatch<dimension, nodes, count>;
   using ShapeGradients = SimplexGradients<dimension, nodes>;
+  const std::vector<Batch>& batches() const { return batches_; }
+  const std::vector<std::vector<Chunk>>& colours() const { return colours_; }  ///< of batches
+  /// dN/dX at quadrature point q of a batch.
+  void shape_gradients(const Batch& batch, int q, ShapeGradients& g) const;
+
+ private:
   static Rule<dimension> rule();
   void make_batches(const Model& model);
   void fill(Batch& batch, const Model& model) const;

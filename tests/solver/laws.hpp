@@ -26,13 +26,14 @@ inline Record sample_record(const Description& description) {
     Value value = slot.fallback;
     if (type(slot.fallback) == Type::nothing && slot.type == Type::number)
       value = std::isfinite(slot.range.high) ? slot.range.low + 13.0 / 15 * (slot.range.high - slot.range.low) : 1000.0;
+    if (type(slot.fallback) == Type::nothing && slot.type == Type::formula) value = Formula(1000.0);
     record.values.push_back(value);
     record.given.push_back(slot.required);
   }
   return record;
 }
 
-/// Every law of the registry, once for each combination of text choices.
+/// Every law of displacements in the registry, once for each combination of text choices.
 inline std::vector<NamedLaw> all_laws() {
   std::vector<NamedLaw> laws;
   for (const MaterialFactory& material : materials()) {
@@ -48,7 +49,8 @@ inline std::vector<NamedLaw> all_laws() {
         }
       variants = more;
     }
-    for (const auto& [name, record] : variants) laws.push_back({name, material.make(record)});
+    for (const auto& [name, record] : variants)
+      if (const auto law = material.make(record); law->components() == 3) laws.push_back({name, law});
   }
   return laws;
 }

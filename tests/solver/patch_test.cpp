@@ -120,6 +120,20 @@ TEST(Tet10, MissesThePatchTestOnlyByTheCurvature) {
   EXPECT_LT(errors[1], 0.6 * errors[0]);
 }
 
+// dN/dxi times the cofactors of a quadratic map: degree 3.
+TEST(Tet10, PassesThePatchTestWhereCurvedWithEightPoints) {
+  Mesh mesh = irregular_mesh(CellKind::tet10);
+  Random random;
+  for (int n = 0; n < mesh.point_count(); ++n)
+    if (!on_boundary(mesh.points.row(n).transpose(), CellKind::tet10))
+      for (int d = 0; d < 3; ++d) mesh.points(n, d) += 0.01 * random.number();
+  Model model = make_model(std::move(mesh), {.strain = Strain::small});
+  model.quadrature = 8;
+  Outcome outcome;
+  EXPECT_LT(patch_error(model, 1e-3 * Mat3::Ones(), outcome) / 1e-3, 1e-10);
+  EXPECT_EQ(outcome.stop, Stop::converged);
+}
+
 TEST(EveryElement, HasNoStressUnderARigidMotion) {
   const Mat3 R = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {

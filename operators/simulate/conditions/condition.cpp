@@ -17,10 +17,23 @@ std::string no_axis(const Value& value) {
 }  // namespace
 
 std::vector<ConditionFactory> conditions() {
-  return {fixed_constraint(), displacement_constraint(),  force_constraint(),
-          surface_pressure(), surface_pressure_on_mesh(), surface_traction(),
-          body_force(),       symmetry_plane(),           roller(),
-          initial_velocity(), initial_displacement(), spring(), spring_to_point(), spring_mesh_to_fixed()};
+  return {fixed_constraint(),
+          displacement_constraint(),
+          force_constraint(),
+          surface_pressure(),
+          surface_pressure_on_mesh(),
+          surface_traction(),
+          body_force(),
+          symmetry_plane(),
+          roller(),
+          initial_velocity(),
+          initial_displacement(),
+          spring(),
+          spring_to_point(),
+          spring_mesh_to_fixed(),
+          fixed_value(),
+          flux(),
+          source()};
 }
 
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes) {

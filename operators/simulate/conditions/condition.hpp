@@ -45,6 +45,9 @@ ConditionFactory initial_displacement();
 ConditionFactory spring();
 ConditionFactory spring_to_point();
 ConditionFactory spring_mesh_to_fixed();
+ConditionFactory fixed_value();
+ConditionFactory flux();
+ConditionFactory source();
 
 /// All of the above.
 std::vector<ConditionFactory> conditions();

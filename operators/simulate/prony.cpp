@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tag that makes a region's law viscoelastic.
+#include <numeric>
+
+#include "operators/simulate/records.hpp"
+#include "operators/simulate/settings.hpp"
+
+namespace msml::simulation {
+
+Factory<fe::Prony> prony() {
+  Factory<fe::Prony> tag("prony", "prony",
+                         "Makes the law of the region relax: quasi-linear viscoelasticity with a series of terms.");
+  tag.source("Fung 1993, Biomechanics; update by Taylor, Pister and Goudreau 1970, doi 10.1002/nme.1620020106");
+  const auto g = tag.parameter<std::vector<double>>(
+      "g",
+      {.range = open(0, 1), .doc = "share of the instantaneous stress that each term loses; their sum is below 1"});
+  const auto tau = tag.parameter<std::vector<double>>(
+      "tau", {.unit = "time", .range = positive(), .doc = "relaxation time of each term"});
+  const auto given = tag.parameter<std::string>(
+      "given", {.fallback = "instantaneous",
+                .choices = {"instantaneous", "longTerm"},
+                .doc = "which stiffness the law beside it has: that of a sudden load, or that after a long time"});
+  tag.note(
+      "The second Piola stress is the convolution of G(t) = 1 - sum g (1 - exp(-t / tau)) with the rate of the law's.");
+  tag.build([=](const Record& record) {
+    fe::Prony series{record[g], record[tau], record[given] == "longTerm"};
+    if (series.g.size() != series.tau.size())
+      refuse(record, fmt::format("g has {} and tau {}: one of each per term",
+                                 counted(static_cast<long long>(series.g.size()), "number"), series.tau.size()));
+    const double sum = std::accumulate(series.g.begin(), series.g.end(), 0.0);
+    if (sum >= 1) refuse(record, fmt::format("the sum of g = {} is not < 1", sum));
+    return series;
+  });
+  return tag;
+}
+
+}  // namespace msml::simulation

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What viscoelastic quadrature points remember.
+#pragma once
+#include <span>
+#include <vector>
+
+#include "solver/materials/law.hpp"
+#include "solver/model.hpp"
+
+namespace msml::fe {
+
+/// A symmetric tensor of eight points: xx yy zz xy yz xz.
+struct SymmetricLanes {
+  Lanes c[6] = {};
+};
+
+/// The history of eight elements at their quadrature points, under quasi-linear viscoelasticity (see Prony):
+/// S = g_inf S_e + sum_i h_i, h_i' + h_i / tau_i = g_i S_e', S_e the elastic second Piola stress, g_inf = 1 - sum_i
+/// g_i. Over a step of dt in which S_e changes linearly, with x = dt / tau_i (Taylor, Pister and Goudreau 1970,
+/// doi 10.1002/nme.1620020106; Simo 1987, doi 10.1016/0045-7825(87)90107-1):
+/// h_i <- exp(-x) h_i + g_i (1 - exp(-x)) / x (S_e,new - S_e,old), so that S = factor S_e + Q with Q fixed in the step.
+/// A step that jumps at its start is one of dt = 0 (instantaneous) followed by one without change. Small-strain laws
+/// use their own stress P instead of S.
+class PronyHistory {
+ public:
+  PronyHistory() = default;
+  PronyHistory(const Prony& prony, int points, bool small_strain);
+
+  bool empty() const { return prony_.g.empty(); }
+  /// Sets the step that follows.
+  void begin_step(double dt);
+  /// Elastic responses become viscoelastic ones: W <- factor W + Q : E, P <- factor P + F Q; the tangent is its
+  /// derivative (for definite_tangent with the semidefinite part of Q).
+  void apply(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
+  /// Takes over the end of the step; `responses` are the elastic ones.
+  void end_step(std::span<const Gradients> gradients, std::span<const Response> responses);
+  /// S at the end of the last step, per point; P for small-strain laws.
+  std::span<const SymmetricLanes> stress() const { return stress_; }
+
+ private:
+  Prony prony_;
+  bool small_strain_ = false;
+  double scale_ = 1;                                ///< of the law to the instantaneous one
+  double factor_ = 1;                               ///< of the elastic stress in this step, scale included
+  std::vector<double> decay_, share_;               ///< exp(-x) and (1 - exp(-x)) / x of each term
+  std::vector<SymmetricLanes> elastic_;             ///< S_e at the start of the step, per point
+  std::vector<std::vector<SymmetricLanes>> parts_;  ///< h_i at the start of the step: [term][point]
+  std::vector<SymmetricLanes> fixed_;               ///< Q, per point
+  std::vector<SymmetricLanes> stress_;
+};
+
+}  // namespace msml::fe

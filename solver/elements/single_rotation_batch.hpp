@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Eight quadratic tetrahedra with one rotation each: the arithmetic, apart from the assembly.
+#pragma once
+#include <functional>
+
+#include "solver/elements/simplex_elements.hpp"
+
+namespace msml::fe {
+
+/// What eight elements keep. Unused lanes have K = 0.
+struct RotationBatch {
+  Lanes X[10][3];     ///< reference positions, relative to corner 0
+  Lanes g[4][3];      ///< gradients of the corners' linear shape functions
+  Lanes K[55][9];     ///< stiffness at rest; block (a, b), a <= b, at b(b+1)/2 + a
+  bool exact = true;  ///< the law asks for the derivative of the force as tangent
+};
+
+/// What one evaluation leaves for the tangent; see make_single_rotation_elements for the letters.
+struct RotationState {
+  Tensor<Lanes> R, U, inverse;  ///< inverse of D
+  Lanes d[10][3], q[10][3], w[3];
+  Lanes energy, J;  ///< J: det of the corners' deformation gradient
+};
+
+/// K and g of a batch; `gradients(q, g)` gives dN/dX at quadrature point q.
+RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
+                                  const std::function<void(int, SimplexGradients<3, 10>&)>& gradients);
+
+/// Makes X relative to corner 0.
+void move_corner(RotationBatch& batch);
+
+/// Forces of eight elements displaced by u into result.force (overwritten).
+RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result);
+
+/// Their stiffness into result.block (overwritten): the Hessian of the energy, or R K R^T.
+void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact, SimplexResult<3, 10>& result);
+
+}  // namespace msml::fe
