@@ -58,20 +58,7 @@ void add_meshes(std::vector<Description>& tags) {
 }
 
 void add_materials(std::vector<Description>& tags) {
-  const char* instead = "take linearElasticMaterial, stVenantKirchhoffMaterial or neoHookeanMaterial";
-  tags.push_back(future(
-      "mooneyRivlinMaterial", "material", "Mooney-Rivlin law.", instead,
-      {{"c1", Type::number, "stress"}, {"c2", Type::number, "stress"}, {"bulkModulus", Type::number, "stress"}}));
-  tags.push_back(future("reducedPolynomialMaterial", "material", "Polynomial in the first invariant.", instead,
-                        {{"c", Type::numbers, "coefficients"}}));
-  tags.push_back(future("polynomialMaterial", "material", "Polynomial in the invariants.", instead,
-                        {{"terms", Type::text, "i j c_ij …"}}));
-  tags.push_back(future("ogdenMaterial", "material", "Ogden's law in the principal stretches.", instead,
-                        {{"mu", Type::numbers, "stress"}, {"alpha", Type::numbers, "exponents"}}));
-  const std::vector<Attribute> fibres{{"fiber", Type::text, "direction"}, {"fiber2", Type::text, "second direction"}};
-  for (const char* tag : {"transverselyIsotropicMaterial", "holzapfelGasserOgdenMaterial", "guccioneMaterial"})
-    tags.push_back(future(tag, "material", "A law with fibres.", instead, fibres));
-  tags.push_back(future("diffusionMaterial", "material", "Coefficient of a scalar problem.", instead,
+  tags.push_back(future("diffusionMaterial", "material", "Coefficient of a scalar problem.", "bodies are elastic",
                         {{"coefficient", Type::number, "of the gradient"}}));
 }
 
