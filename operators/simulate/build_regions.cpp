@@ -6,6 +6,7 @@
 
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/records.hpp"
+#include "operators/simulate/region_materials.hpp"
 #include "operators/simulate/selection.hpp"
 #include "solver/materials/diffusion.hpp"
 #include "solver/registry.hpp"
@@ -118,10 +119,12 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
     if (material == nullptr) refuse(*records[i], "has no material");
     if (material->tag() == "pointMass") refuse(*material, "is for a body of particles; elements need a material law");
     fe::Region region{.name = region_name(*records[i], i),
-                      .law = make<std::shared_ptr<const fe::Law>>(*material),
+                      .law = nullptr,
                       .density = density(*records[i]),
                       .elements = owners.elements(i)};
-    if (material->tag() == "diffusionMaterial") region.point_law = fe::diffusion_field(*material);
+    set_material(*material, body, region);
+    if (material->tag() == "diffusionMaterial")
+      if (fe::PointLaw field = fe::diffusion_field(*material)) region.point_law = std::move(field);
     if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }

@@ -44,22 +44,6 @@ Description future(const char* tag, const char* category, const char* doc, const
   return description;
 }
 
-void add_materials(std::vector<Description>& tags) {
-  const char* instead = "take linearElasticMaterial, stVenantKirchhoffMaterial or neoHookeanMaterial";
-  tags.push_back(future(
-      "mooneyRivlinMaterial", "material", "Mooney-Rivlin law.", instead,
-      {{"c1", Type::number, "stress"}, {"c2", Type::number, "stress"}, {"bulkModulus", Type::number, "stress"}}));
-  tags.push_back(future("reducedPolynomialMaterial", "material", "Polynomial in the first invariant.", instead,
-                        {{"c", Type::numbers, "coefficients"}}));
-  tags.push_back(future("polynomialMaterial", "material", "Polynomial in the invariants.", instead,
-                        {{"terms", Type::text, "i j c_ij …"}}));
-  tags.push_back(future("ogdenMaterial", "material", "Ogden's law in the principal stretches.", instead,
-                        {{"mu", Type::numbers, "stress"}, {"alpha", Type::numbers, "exponents"}}));
-  const std::vector<Attribute> fibres{{"fiber", Type::text, "direction"}, {"fiber2", Type::text, "second direction"}};
-  for (const char* tag : {"transverselyIsotropicMaterial", "holzapfelGasserOgdenMaterial", "guccioneMaterial"})
-    tags.push_back(future(tag, "material", "A law with fibres.", instead, fibres));
-}
-
 void add_msml_constraints(std::vector<Description>& tags) {
   tags.push_back(future("supportingMesh", "constraint", "A second mesh embedded in the main one.",
                         "give its elements a region of their own",
@@ -86,7 +70,6 @@ void add_msml_constraints(std::vector<Description>& tags) {
 
 std::vector<Description> future_tags() {
   std::vector<Description> tags;
-  add_materials(tags);
   add_msml_constraints(tags);
   return tags;
 }

@@ -70,9 +70,9 @@ Tensor<T> spin_stiffness(const T& c, const Tensor<T>& strain) {
   return Z;
 }
 
-/// stretch I + trace r r^T + T Z T^T, r = vec R.
+/// stretch I + spherical r r^T + T Z T^T, r = vec R.
 template <class T>
-void corotated_tangent(double stretch, double trace, const Tensor<T>& R, const Tensor<T>& Z, T* A) {
+void corotated_tangent(const T& stretch, const T& spherical, const Tensor<T>& R, const Tensor<T>& Z, T* A) {
   T spin[9][3] = {}, spin_Z[9][3];
   for (int k = 0; k < 3; ++k) {
     const int p = (k + 1) % 3, q = (k + 2) % 3;
@@ -85,8 +85,8 @@ void corotated_tangent(double stretch, double trace, const Tensor<T>& R, const T
     for (int k = 0; k < 3; ++k) spin_Z[I][k] = spin[I][0] * Z(0, k) + spin[I][1] * Z(1, k) + spin[I][2] * Z(2, k);
   for (int I = 0; I < 9; ++I) {
     for (int J = 0; J <= I; ++J)
-      A[packed_at(I, J)] =
-          trace * R.c[I] * R.c[J] + spin_Z[I][0] * spin[J][0] + spin_Z[I][1] * spin[J][1] + spin_Z[I][2] * spin[J][2];
+      A[packed_at(I, J)] = spherical * R.c[I] * R.c[J] + spin_Z[I][0] * spin[J][0] + spin_Z[I][1] * spin[J][1] +
+                           spin_Z[I][2] * spin[J][2];
     A[packed_at(I, I)] += stretch;
   }
 }

@@ -41,4 +41,17 @@ struct VolumeChoice {
 /// for Poisson's ratio to be above -1 (which no positive kappa is).
 VolumeChoice volume_choice(const Record& record, const VolumeKeys& keys, double shear_modulus);
 
+/// The law of a kernel that leaves volume changes to the attributes `keys`.
+template <template <class> class Kernel>
+std::shared_ptr<const Law> make_isochoric(const Record& record, const VolumeKeys& keys, Kernel<Lanes> kernel,
+                                          double shear_modulus, bool isotropic = true) {
+  const VolumeChoice volume = volume_choice(record, keys, shear_modulus);
+  return std::make_shared<PotentialLaw<Kernel>>(std::move(kernel), volume.energy,
+                                                LawFacts{.name = record.tag(),
+                                                         .shear_modulus = shear_modulus,
+                                                         .poisson_ratio = volume.poisson_ratio,
+                                                         .isotropic = isotropic,
+                                                         .incompressible = volume.incompressible});
+}
+
 }  // namespace msml::fe

@@ -119,13 +119,15 @@ struct TwoInvariants {
   using Energy = Jet<T, count>;
   Energy a, j;
 
-  explicit TwoInvariants(const Invariants<T>& of) : a(Energy::variable(0, of.a)), j(Energy::variable(1, of.j)) {}
-  static void slopes(const Invariants<T>& of, Tensor<T> (&d)[count]) {
+  TwoInvariants(const T& value_a, const T& value_j)
+      : a(Energy::variable(0, value_a)), j(Energy::variable(1, value_j)) {}
+  explicit TwoInvariants(const Invariants<T>& of) : TwoInvariants(of.a, of.j) {}
+  void slopes(const Invariants<T>& of, Tensor<T> (&d)[count]) const {
     d[0] = of.slope_of_a();
     d[1] = of.slope_of_j();
   }
   /// A += sum of w_x d2x/dF2.
-  static void add_curvature(const Invariants<T>& of, const Energy& w, T* A) {
+  void add_curvature(const Invariants<T>& of, const Energy& w, T* A) const {
     const T c = 2.0 * w.first[0];
     add_identity(c, A);
     add_curvature_of_volume<T>(w.first[1] - c, of.F(), A);
@@ -140,14 +142,15 @@ struct ThreeInvariants {
   using Energy = Jet<T, count>;
   Energy a, b, j;
 
-  explicit ThreeInvariants(const Invariants<T>& of)
-      : a(Energy::variable(0, of.a)), b(Energy::variable(1, of.b)), j(Energy::variable(2, of.j)) {}
-  static void slopes(const Invariants<T>& of, Tensor<T> (&d)[count]) {
+  ThreeInvariants(const T& value_a, const T& value_b, const T& value_j)
+      : a(Energy::variable(0, value_a)), b(Energy::variable(1, value_b)), j(Energy::variable(2, value_j)) {}
+  explicit ThreeInvariants(const Invariants<T>& of) : ThreeInvariants(of.a, of.b, of.j) {}
+  void slopes(const Invariants<T>& of, Tensor<T> (&d)[count]) const {
     d[0] = of.slope_of_a();
     d[1] = of.slope_of_b();
     d[2] = of.slope_of_j();
   }
-  static void add_curvature(const Invariants<T>& of, const Energy& w, T* A) {
+  void add_curvature(const Invariants<T>& of, const Energy& w, T* A) const {
     const Tensor<T> F = of.F();
     const T c = 2.0 * w.first[0];
     add_identity(c, A);

@@ -79,4 +79,21 @@ Jet<T, N> chain(const Jet<T, N>& x, const T& f, const T& slope, const T& curvatu
   return z;
 }
 
+/// A function f of M jets.
+template <class T, int M, int N>
+Jet<T, N> compose(const Jet<T, M>& f, const Jet<T, N> (&x)[M]) {
+  Jet<T, N> z;
+  z.value = f.value;
+  for (int m = 0; m < M; ++m) {
+    for (int i = 0; i < N; ++i) z.first[i] += f.first[m] * x[m].first[i];
+    for (int k = 0; k < N * (N + 1) / 2; ++k) z.second[k] += f.first[m] * x[m].second[k];
+    for (int n = 0; n < M; ++n) {
+      const T& c = f.second[f.at(m, n)];
+      for (int i = 0; i < N; ++i)
+        for (int j = 0; j <= i; ++j) z.second[z.at(i, j)] += c * x[m].first[i] * x[n].first[j];
+    }
+  }
+  return z;
+}
+
 }  // namespace msml::fe

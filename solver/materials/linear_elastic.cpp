@@ -11,26 +11,25 @@ namespace msml::fe {
 namespace {
 
 struct Lame {
-  double mu, lambda;
+  Lanes mu, lambda;
 };
 
 /// Hooke's law: 2 mu e + lambda tr(e) I.
-template <class T>
-Tensor<T> hooke(Lame m, const Tensor<T>& e) {
-  Tensor<T> s;
-  const T pressure = m.lambda * trace(e);
-  for (int k = 0; k < 9; ++k) s.c[k] = 2 * m.mu * e.c[k];
+Tensor<Lanes> hooke(const Lame& m, const Tensor<Lanes>& e) {
+  Tensor<Lanes> s;
+  const Lanes pressure = m.lambda * trace(e);
+  for (int k = 0; k < 9; ++k) s.c[k] = 2.0 * m.mu * e.c[k];
   for (int i = 0; i < 3; ++i) s(i, i) += pressure;
   return s;
 }
 
 /// The constant tangent of small strain: dsigma_ik/dH_jl = mu (d_ij d_kl + d_il d_kj) + lambda d_ik d_jl.
-template <class T>
-void small_tangent(Lame m, T* A) {
+void small_tangent(const Lame& m, Lanes* A) {
   for (int I = 0; I < 9; ++I)
     for (int J = 0; J <= I; ++J) {
       const int i = I / 3, k = I % 3, j = J / 3, l = J % 3;
-      A[packed_at(I, J)] = T{} + (m.mu * ((i == j && k == l) + (i == l && k == j)) + m.lambda * (i == k && j == l));
+      const double shear = (i == j && k == l) + (i == l && k == j), volume = i == k && j == l;
+      A[packed_at(I, J)] = shear * m.mu + volume * m.lambda;
     }
 }
 
@@ -55,7 +54,8 @@ class TraceConstraint final : public Law {
       for (int k = 0; k < 3 && small; ++k) out.P(k, k) += 1.0;
       if (want == Want::stress) continue;
       const bool exact = !small && wants_exact(data_, want);
-      corotated_tangent(0, 0, p.R, exact ? spin_stiffness(lanes_of(1), p.strain) : Tensor<Lanes>{}, out.tangent);
+      corotated_tangent(Lanes{}, Lanes{}, p.R, exact ? spin_stiffness(lanes_of(1), p.strain) : Tensor<Lanes>{},
+                        out.tangent);
     }
   }
   void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
@@ -77,7 +77,7 @@ class TraceConstraint final : public Law {
 
 class LinearLaw final : public Law {
  public:
-  LinearLaw(const LinearElastic& data, Lame lame) : data_(data), lame_(lame) {}
+  LinearLaw(const LinearElastic& data, const Lame& lame) : data_(data), lame_(lame) {}
 
   void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i)
@@ -106,15 +106,24 @@ class LinearLaw final : public Law {
 
   std::string name() const override { return "linearElasticMaterial"; }
   double poisson_ratio() const override { return data_.poisson_ratio; }
-  double shear_modulus() const override { return lame_.mu; }
+  double shear_modulus() const override { return lame_.mu[0]; }
   bool exact_tangent() const override { return data_.strain == Strain::small || wants_exact(data_, Want::tangent); }
   bool small_strain() const override { return data_.strain == Strain::small; }
-  bool survives_inversion() const override { return true; }
   /// g = tr e, with modulus lambda.
   std::optional<Split> split() const override {
-    return Split{.rest = std::make_shared<LinearLaw>(data_, Lame{lame_.mu, 0}),
+    return Split{.rest = std::make_shared<LinearLaw>(data_, Lame{lame_.mu, {}}),
                  .constraint = std::make_shared<TraceConstraint>(data_),
-                 .modulus = lame_.lambda};
+                 .modulus = lame_.lambda[0]};
+  }
+  std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {
+    Lame mixed = lame_;
+    for (std::size_t lane = 0; lane < others.size(); ++lane) {
+      const auto* other = dynamic_cast<const LinearLaw*>(others[lane].get());
+      if (other == nullptr || other->data_.strain != data_.strain || other->data_.tangent != data_.tangent) return {};
+      mixed.mu[lane] = other->lame_.mu[lane];
+      mixed.lambda[lane] = other->lame_.lambda[lane];
+    }
+    return std::make_shared<LinearLaw>(data_, mixed);
   }
 
  private:
@@ -132,12 +141,12 @@ class LinearLaw final : public Law {
     out.P = product(R, stress);
     if (want == Want::stress) return;
     if (wants_exact(data_, want)) {
-      const Lanes c = lame_.lambda * trace(strain) - 2 * lame_.mu;
-      corotated_tangent(2 * lame_.mu, lame_.lambda, R, spin_stiffness(c, strain), out.tangent);
+      const Lanes c = lame_.lambda * trace(strain) - 2.0 * lame_.mu;
+      corotated_tangent<Lanes>(2.0 * lame_.mu, lame_.lambda, R, spin_stiffness(c, strain), out.tangent);
     } else {
       Tensor<Lanes> Z{};
       for (int i = 0; i < 3; ++i) Z(i, i) -= lame_.mu;
-      corotated_tangent(2 * lame_.mu, lame_.lambda, R, Z, out.tangent);
+      corotated_tangent<Lanes>(2.0 * lame_.mu, lame_.lambda, R, Z, out.tangent);
     }
   }
 
@@ -153,7 +162,8 @@ std::shared_ptr<const Law> make_linear_elastic(const LinearElastic& data) {
   if (!open(-1, 0.5).contains(data.poisson_ratio))
     throw Error(fmt::format("poissonRatio = {} is not in (-1, 0.5)", data.poisson_ratio));
   const double E = data.youngs_modulus, nu = data.poisson_ratio;
-  return std::make_shared<LinearLaw>(data, Lame{E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))});
+  return std::make_shared<LinearLaw>(data,
+                                     Lame{lanes_of(E / (2 * (1 + nu))), lanes_of(E * nu / ((1 + nu) * (1 - 2 * nu)))});
 }
 
 Factory<std::shared_ptr<const Law>> linear_elastic_material() {

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "msml/core/error.hpp"
+#include "solver/materials/clamped.hpp"
 #include "solver/materials/hyperelastic.hpp"
 #include "solver/registry.hpp"
 
@@ -97,7 +98,8 @@ MaterialFactory neo_hookean_material() {
       "is "
       "Hooke's law of E and nu.");
   const Keys keys = describe(material);
-  material.build([=](const Record& record) { return build(record, keys); });
+  const InversionKeys inversion = describe_inversion(material);
+  material.build([=](const Record& record) { return with_inversion(record, inversion, build(record, keys)); });
   return material;
 }
 

@@ -15,9 +15,9 @@ struct LogNeoHookean {
     const T j = x.j.value, J = 1.0 + j;
     return scale<T>(0.5 * mu, x.a) + Jet<T, 2>::of_variable(1, mu * (j - ln1p(j)), mu * j / J, mu / (J * J));
   }
-  template <class F>
-  void each(F&& f) {
-    f(mu);
+  template <class U, class F>
+  LogNeoHookean<U> map(F&& f) const {
+    return {f(mu)};
   }
 };
 
@@ -32,9 +32,9 @@ struct CubicNeoHookean {
     return scale<T>(0.5 * mu, x.a) +
            Jet<T, 2>::of_variable(1, mu * j * j * (0.5 - j / 3.0), mu * j * (1.0 - j), mu * (1.0 - 2.0 * j));
   }
-  template <class F>
-  void each(F&& f) {
-    f(mu);
+  template <class U, class F>
+  CubicNeoHookean<U> map(F&& f) const {
+    return {f(mu)};
   }
 };
 
@@ -58,9 +58,9 @@ struct StableNeoHookean {
     w.second[2] = -2.0 * m * curvature;
     return w;
   }
-  template <class F>
-  void each(F&& f) {
-    f(mu);
+  template <class U, class F>
+  StableNeoHookean<U> map(F&& f) const {
+    return {f(mu)};
   }
 };
 
@@ -71,9 +71,9 @@ struct IsochoricNeoHookean {
   T mu;
 
   Jet<T, 2> operator()(const Variables& x) const { return scale<T>(0.5 * mu, isochoric_first(x.a, x.j)); }
-  template <class F>
-  void each(F&& f) {
-    f(mu);
+  template <class U, class F>
+  IsochoricNeoHookean<U> map(F&& f) const {
+    return {f(mu)};
   }
 };
 

@@ -2,6 +2,7 @@
 // The tag stVenantKirchhoffMaterial.
 #include "solver/materials/saint_venant_kirchhoff.hpp"
 
+#include "solver/materials/clamped.hpp"
 #include "solver/materials/hyperelastic.hpp"
 #include "solver/registry.hpp"
 
@@ -18,12 +19,14 @@ MaterialFactory saint_venant_kirchhoff_material() {
   const auto young =
       material.parameter("youngModulus", {.unit = "stress", .range = positive(), .doc = "Young's modulus"});
   const auto poisson = material.parameter("poissonRatio", {.range = open(-1, 0.5), .doc = "Poisson's ratio"});
+  const InversionKeys inversion = describe_inversion(material);
   material.build([=](const Record& record) -> std::shared_ptr<const Law> {
     const Lame lame = lame_of(record[young], record[poisson]);
     const LawFacts facts{
         .name = record.tag(), .shear_modulus = lame.mu, .poisson_ratio = record[poisson], .survives_inversion = true};
-    return std::make_shared<PotentialLaw<SaintVenantKirchhoff>>(
-        SaintVenantKirchhoff<Lanes>{lanes_of(lame.mu), lanes_of(lame.lambda)}, Volumetric<Lanes>{}, facts);
+    const SaintVenantKirchhoff<Lanes> kernel{lanes_of(lame.mu), lanes_of(lame.lambda)};
+    return with_inversion(record, inversion,
+                          std::make_shared<PotentialLaw<SaintVenantKirchhoff>>(kernel, Volumetric<Lanes>{}, facts));
   });
   return material;
 }

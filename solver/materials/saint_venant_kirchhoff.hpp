@@ -23,10 +23,9 @@ struct SaintVenantKirchhoff {
     w.second[w.at(2, 2)] = modulus;
     return w;
   }
-  template <class F>
-  void each(F&& f) {
-    f(mu);
-    f(lambda);
+  template <class U, class F>
+  SaintVenantKirchhoff<U> map(F&& f) const {
+    return {f(mu), f(lambda)};
   }
 };
 

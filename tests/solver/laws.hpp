@@ -3,11 +3,13 @@
 #pragma once
 #include <Eigen/Geometry>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
+#include "msml/core/error.hpp"
 #include "msml/core/mesh.hpp"
 #include "solver/registry.hpp"
 
@@ -18,19 +20,46 @@ struct NamedLaw {
   std::shared_ptr<const Law> law;
 };
 
-/// A record with each number inside its range: 1000 where only positive, 13/15 of the way where bounded (Poisson .3).
-/// What is optional is given too, where it is a number.
-inline Record sample_record(const Description& description) {
+/// The value that a test takes for an attribute: one that suits the laws, else 1000 where only positive, 13/15 of the
+/// way where bounded (Poisson .3). Absent where the attribute may be left out and is no number.
+inline Value sample_value(const Slot& slot) {
+  static const std::map<std::string, Value> values{
+      {"c1", 200.0},
+      {"c2", 60.0},
+      {"bulkModulus", 1500.0},
+      {"k1", 300.0},
+      {"k2", 0.4},
+      {"kappa", 0.1},
+      {"bf", 1.8},
+      {"bt", 0.9},
+      {"bfs", 1.3},
+      {"fiber", std::string("1 2 -0.5")},
+      {"fiber2", std::string("-1 0.3 2")},
+      {"c", std::vector<double>{200, -20, 6}},
+      {"alpha", std::vector<double>{1.3, -2.2}},
+      {"terms", std::vector<double>{1, 0, 200, 0, 1, 60, 1, 1, 12, 2, 0, 9}}};
+  if (slot.type == Type::numbers && slot.name == "mu") return std::vector<double>{400, -150};
+  if (const auto found = values.find(slot.name); found != values.end()) return found->second;
+  if (type(slot.fallback) != Type::nothing || slot.type != Type::formula) return slot.fallback;
+  return std::isfinite(slot.range.high) ? slot.range.low + 13.0 / 15 * (slot.range.high - slot.range.low) : 1000.0;
+}
+
+/// A record with a value for every attribute, or what `set` says instead; monostate there leaves an attribute out.
+inline Record sample_record(const Description& description, const std::map<std::string, Value>& set = {}) {
   Record record{.description = &description};
   for (const Slot& slot : description.slots()) {
-    Value value = slot.fallback;
-    if (type(slot.fallback) == Type::nothing && slot.type == Type::number)
-      value = std::isfinite(slot.range.high) ? slot.range.low + 13.0 / 15 * (slot.range.high - slot.range.low) : 1000.0;
-    if (type(slot.fallback) == Type::nothing && slot.type == Type::formula) value = Formula(1000.0);
-    record.values.push_back(value);
-    record.given.push_back(slot.required);
+    const auto found = set.find(slot.name);
+    record.values.push_back(found != set.end() ? found->second : sample_value(slot));
+    record.given.push_back(found != set.end());
   }
   return record;
+}
+
+/// A law of the registry with these attributes and samples for the others.
+inline std::shared_ptr<const Law> law_of(const std::string& tag, const std::map<std::string, Value>& set = {}) {
+  for (const MaterialFactory& material : materials())
+    if (material.tag() == tag) return material.make(sample_record(material, set));
+  throw Error("no material " + tag);
 }
 
 /// Every law of displacements in the registry, once for each combination of text choices.

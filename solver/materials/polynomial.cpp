@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The tags mooneyRivlinMaterial, reducedPolynomialMaterial and polynomialMaterial.
+#include "solver/materials/polynomial.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "msml/core/error.hpp"
+#include "solver/materials/clamped.hpp"
+#include "solver/materials/hyperelastic.hpp"
+#include "solver/registry.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr const char* volume_note =
+    "The first invariants are those of J^(-1/3) F, so that volume changes are left to the volumetric term. For small "
+    "strain it is Hooke's law of kappa = bulkModulus and the mu named above.";
+
+[[noreturn]] void refuse_modulus(const Record& record, const std::string& formula, double mu) {
+  throw Error(fmt::format("{}: the shear modulus at rest, {} = {:g}, is not > 0", record.tag(), formula, mu),
+              record.where);
+}
+
+Polynomial<Lanes> polynomial_of(const Record& record, const std::vector<double>& terms) {
+  Polynomial<Lanes> kernel;
+  for (std::size_t k = 0; k + 2 < terms.size(); k += 3) {
+    const double i = terms[k], j = terms[k + 1];
+    const auto whole = [](double n) { return n >= 0 && n <= 10 && n == std::floor(n); };
+    if (!whole(i) || !whole(j) || i + j == 0)
+      throw Error(
+          fmt::format("{}: terms holds the powers {:g} {:g}; powers are whole numbers from 0 to 10, not both 0: "
+                      "\"1 0 c10 0 1 c01 …\"",
+                      record.tag(), i, j),
+          record.where);
+    kernel.terms.push_back({static_cast<int>(i), static_cast<int>(j), lanes_of(terms[k + 2])});
+  }
+  return kernel;
+}
+
+}  // namespace
+
+MaterialFactory mooney_rivlin_material() {
+  MaterialFactory material("mooneyRivlinMaterial", "material",
+                           "Mooney-Rivlin rubber, W = c1 (J^(-2/3) I1 - 3) + c2 (J^(-4/3) I2 - 3) + volumetric.");
+  material.source("Mooney 1940, doi 10.1063/1.1712836; Rivlin 1948, doi 10.1098/rsta.1948.0024");
+  const auto c1 = material.parameter("c1", {.unit = "stress", .doc = "c1; mu = 2 (c1 + c2) is > 0"});
+  const auto c2 = material.parameter("c2", {.unit = "stress", .fallback = 0.0, .doc = "c2"});
+  const VolumeKeys keys = describe_volume(material);
+  const InversionKeys inversion = describe_inversion(material);
+  material.note(volume_note);
+  material.build([=](const Record& record) {
+    const double mu = 2 * (record[c1] + record[c2]);
+    if (!(mu > 0)) refuse_modulus(record, "2 (c1 + c2)", mu);
+    return with_inversion(
+        record, inversion,
+        make_isochoric(record, keys, MooneyRivlin<Lanes>{lanes_of(record[c1]), lanes_of(record[c2])}, mu));
+  });
+  return material;
+}
+
+MaterialFactory reduced_polynomial_material() {
+  MaterialFactory material("reducedPolynomialMaterial", "material",
+                           "Polynomial in the first invariant, W = sum of c_i (J^(-2/3) I1 - 3)^i + volumetric; three "
+                           "terms are Yeoh's law, one is neo-Hookean.");
+  material.source("Yeoh 1993, doi 10.5254/1.3538343");
+  const auto c = material.parameter<std::vector<double>>("c", {
+                                                                  .unit = "stress",
+                                                                  .doc = "c_1 c_2 …, up to 10; mu = 2 c_1 is > 0",
+                                                              });
+  const VolumeKeys keys = describe_volume(material);
+  const InversionKeys inversion = describe_inversion(material);
+  material.note(volume_note);
+  material.build([=](const Record& record) {
+    const std::vector<double>& list = record[c];
+    if (list.empty() || list.size() > 10)
+      throw Error(fmt::format("{}: c has {} numbers; it takes 1 to 10", record.tag(), list.size()), record.where);
+    if (!(list[0] > 0)) refuse_modulus(record, "2 c_1", 2 * list[0]);
+    ReducedPolynomial<Lanes> kernel;
+    for (const double x : list) kernel.c.push_back(lanes_of(x));
+    return with_inversion(record, inversion, make_isochoric(record, keys, kernel, 2 * list[0]));
+  });
+  return material;
+}
+
+MaterialFactory polynomial_material() {
+  MaterialFactory material("polynomialMaterial", "material",
+                           "Polynomial in two invariants, W = sum of c_ij (J^(-2/3) I1 - 3)^i (J^(-4/3) I2 - 3)^j + "
+                           "volumetric.");
+  material.source("Rivlin and Saunders 1951, doi 10.1098/rsta.1951.0004");
+  const auto terms = material.parameter<std::vector<double>>(
+      "terms", {.multiple_of = 3, .doc = "i j c_ij for each term, c_ij a stress; mu = 2 (c_10 + c_01) is > 0"});
+  const VolumeKeys keys = describe_volume(material);
+  const InversionKeys inversion = describe_inversion(material);
+  material.note(volume_note);
+  material.build([=](const Record& record) {
+    const Polynomial<Lanes> kernel = polynomial_of(record, record[terms]);
+    double mu = 0;
+    for (const auto& [i, j, c] : kernel.terms)
+      if (i + j == 1) mu += 2 * c[0];
+    if (!(mu > 0)) refuse_modulus(record, "2 (c_10 + c_01)", mu);
+    return with_inversion(record, inversion, make_isochoric(record, keys, kernel, mu));
+  });
+  return material;
+}
+
+}  // namespace msml::fe

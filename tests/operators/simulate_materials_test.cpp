@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Materials whose numbers and directions come from cell fields.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "operators/simulate/build_model.hpp"
+#include "solver/materials/law.hpp"
+#include "tests/operators/simulate_scene.hpp"
+
+namespace msml::test {
+namespace {
+
+using simulation::build_model;
+using testing::HasSubstr;
+
+/// A bar of two cubes along z, 12 elements; fibres along z below and along x above, E = 1000 + 100 element.
+Scene bar(const Language& language, const std::string& tag, const Attributes& attributes) {
+  Scene scene = cube(language);
+  auto mesh = std::make_shared<Mesh>(box(1, 1, 2));
+  Field fibres{.name = "fibres", .components = 3, .values = {}}, stiffness{.name = "E", .components = 1, .values = {}};
+  for (int e = 0; e < mesh->cell_count(); ++e) {
+    for (const double x : {e < 6 ? 0.0 : 2.0, 0.0, e < 6 ? 1.0 : 0.0}) fibres.values.push_back(x);
+    stiffness.values.push_back(1000 + 100 * e);
+  }
+  mesh->cell_fields = {fibres, stiffness};
+  scene.mesh = mesh;
+  scene.regions = {language.tag("region", "region", {}, {language.tag(tag, "material", attributes)})};
+  return scene;
+}
+
+std::string message(const Language& language, const Scene& scene) {
+  Listener listener;
+  try {
+    build_model(scene.record(language), listener, 1);
+  } catch (const Error& error) {
+    return error.str();
+  }
+  return "no error";
+}
+
+/// First Piola stress for F = diag(x, y, z), in lane k.
+Mat3 stress(const fe::Law& law, double x, double y, double z, int lane) {
+  fe::Gradients H{};
+  H(0, 0) += x - 1;
+  H(1, 1) += y - 1;
+  H(2, 2) += z - 1;
+  fe::Response response;
+  law.evaluate(fe::Want::stress, {&H, 1}, {&response, 1});
+  Mat3 P;
+  for (int k = 0; k < 9; ++k) P(k / 3, k % 3) = response.P.c[k][lane];
+  return P;
+}
+
+const Attributes fibre_law{{"youngModulus", 1000.0}, {"poissonRatio", 0.3}, {"k1", 300.0}, {"k2", 0.5}};
+
+Attributes with(Attributes attributes, const std::string& name, const Value& value) {
+  attributes[name] = value;
+  return attributes;
+}
+
+TEST(Materials, TakeFibresFromACellField) {
+  const Language language;
+  Listener listener;
+  const Scene scene = bar(language, "transverselyIsotropicMaterial", with(fibre_law, "fiber", std::string("fibres")));
+  const auto simulation = build_model(scene.record(language), listener, 1);
+  const fe::Region& region = simulation.model.regions[0];
+  ASSERT_TRUE(region.local_law);
+  const std::vector<int> elements{5, 6, 11};  // the last repeats in the other lanes
+  const auto law = region.local_law(elements);
+  const double l = 1.3, f = l * l - 1, fibre = 2 * 300 * f * std::exp(0.5 * f * f) * l;
+  const Mat3 below = stress(*law, 1, 1, l, 0), above = stress(*law, 1, 1, l, 1);
+  EXPECT_NEAR(below(2, 2) - above(2, 2), fibre, 1e-9);
+  EXPECT_EQ(stress(*law, l, 1, 1, 1), stress(*law, l, 1, 1, 7));
+}
+
+TEST(Materials, TakeNumbersFromACellField) {
+  const Language language;
+  Listener listener;
+  const Attributes attributes{{"youngModulus", 1.0},
+                              {"poissonRatio", 0.25},
+                              {"strain", std::string("small")},
+                              {"fields", std::string("youngModulus=E")}};
+  const auto simulation = build_model(bar(language, "linearElasticMaterial", attributes).record(language), listener, 1);
+  const std::vector<int> elements{3, 7};
+  const auto law = simulation.model.regions[0].local_law(elements);
+  // lambda = mu = 0.4 E: P = 0.4 E (2 e + tr(e)).
+  EXPECT_NEAR(stress(*law, 1.01, 1, 1, 0)(0, 0), 0.4 * 1300 * 0.03, 1e-10);
+  EXPECT_NEAR(stress(*law, 1.01, 1, 1, 1)(0, 0), 0.4 * 1700 * 0.03, 1e-10);
+}
+
+TEST(Materials, MayBeExpressionsInThePlace) {
+  const Language language;
+  Listener listener;
+  const auto scene = [&](const std::string& young) {
+    return bar(language, "linearElasticMaterial",
+               {{"youngModulus", Formula(young)}, {"poissonRatio", 0.25}, {"strain", std::string("small")}});
+  };
+  const auto simulation = build_model(scene("1000*(1+Z)").record(language), listener, 1);
+  ASSERT_TRUE(simulation.model.regions[0].point_law);
+  const std::vector<Vec3> places{{0, 0, 0.5}, {3, 1, 2}};
+  const auto law = simulation.model.regions[0].point_law(places);
+  EXPECT_NEAR(stress(*law, 1.01, 1, 1, 0)(0, 0), 0.4 * 1500 * 0.03, 1e-10);
+  EXPECT_NEAR(stress(*law, 1.01, 1, 1, 7)(0, 0), 0.4 * 3000 * 0.03, 1e-10);
+  EXPECT_THAT(message(language, scene("1000+t")), HasSubstr("depends on t"));
+  EXPECT_THAT(message(language, scene("Z-1")), HasSubstr("youngModulus"));
+}
+
+TEST(Materials, RefuseFieldsThatDoNotFit) {
+  const Language language;
+  const auto fibre = [&](const std::string& name) {
+    return message(language, bar(language, "transverselyIsotropicMaterial", with(fibre_law, "fiber", name)));
+  };
+  EXPECT_THAT(fibre("fibers"), HasSubstr("fiber = 'fibers' is no cell field of the mesh; it has fibres, E"));
+  EXPECT_THAT(fibre("E"), HasSubstr("fiber is taken from the cell field 'E', which has 1 component instead of 3"));
+  const auto numbers = [&](const std::string& fields) {
+    const Attributes attributes{{"youngModulus", 1.0}, {"poissonRatio", 0.25}, {"fields", fields}};
+    return message(language, bar(language, "neoHookeanMaterial", attributes));
+  };
+  EXPECT_THAT(numbers("youngModulus"), HasSubstr("'youngModulus' is no pair attribute=field"));
+  EXPECT_THAT(numbers("young=E"), HasSubstr("'young' is no attribute that takes a number"));
+  EXPECT_THAT(numbers("form=E"), HasSubstr("'form' is no attribute that takes a number"));
+  EXPECT_THAT(numbers("poissonRatio=E"), HasSubstr("the field 'E' holds 1000 in element 0"));
+  EXPECT_EQ(numbers("youngModulus=E"), "no error");
+}
+
+TEST(Materials, RefuseIncompressibleLawsOutsideMixedElements) {
+  const Language language;
+  Listener listener;
+  const Scene scene = bar(language, "mooneyRivlinMaterial", {{"c1", 1.0}, {"incompressible", true}});
+  const auto simulation = build_model(scene.record(language), listener, 1);
+  try {
+    simulation.model.check();
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.str(), HasSubstr("needs a mesh with formulation=\"mixed\""));
+  }
+}
+
+}  // namespace
+}  // namespace msml::test
