@@ -224,6 +224,7 @@ struct State {
   Points displacement, velocity, acceleration;
   Points reaction;  ///< force of the constraint on the body; zero where free
   Energies energies;
+  std::vector<double> pressure;  ///< mixed elements: #points, positive in compression; empty otherwise
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.

@@ -17,7 +17,8 @@ State Run::state() const {
           to_points(numbering, now.v),
           to_points(numbering, now.a),
           to_points(numbering, now.reaction),
-          now.energies};
+          now.energies,
+          to_pressures(numbering, now.u)};
 }
 
 bool Run::accept() {
