@@ -43,7 +43,23 @@ class EnergyAlong {
 
 }  // namespace
 
+double Newton::residual_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u) {
+  const Vector start = u;
+  const double norm = free_norm(residual, increment.fixed);
+  const bool guarded = barrier_ && searching_ && forces_.found.smallest_J > 0 && !model_.settings.allow_inverted;
+  double step = 1;
+  for (int trial = 0; trial < 10; ++trial, step *= 0.5) {
+    u = start + step * direction;
+    evaluate(increment, u, want_, false);
+    const double now = free_norm(free_residual(increment), increment.fixed);
+    if (guarded && forces_.found.smallest_J <= 0) continue;
+    if (forces_.found.finite && std::isfinite(now) && (!searching_ || now <= (1 - 1e-4 * step) * norm)) return step;
+  }
+  return forces_.found.finite ? step : 0;
+}
+
 double Newton::line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u) {
+  if (equations_.numbering().mixed()) return residual_search(increment, direction, residual, u);
   const Vector start = u;
   const double norm = free_norm(residual, increment.fixed), slope = dot(direction, residual);
   const EnergyAlong energy(increment, forces_, direction);

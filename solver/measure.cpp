@@ -94,12 +94,32 @@ void take_history(const ElementPoints& points, const double* stress, bool small_
   }
 }
 
-/// `history` may be null.
-void measure_law(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
-                 ElementResults& results) {
+/// The measures of a law that was taken apart: W = rest + p^2/(2 k), stress of rest and p dg/dF.
+Measures measure_split(const ElementPoints& points, const Split& split) {
+  Measures sum, volume;
+  split.rest->measure({&points.gradient, 1}, {&sum, 1});
+  split.constraint->measure({&points.gradient, 1}, {&volume, 1});
+  for (int k = 0; k < 9; ++k) sum.cauchy.c[k] += points.volume_stress * volume.cauchy.c[k];
+  sum.energy += points.volume_stress * points.volume_stress * (0.5 / split.modulus);
+  return sum;
+}
+
+bool splits(Formulation formulation) { return formulation == Formulation::mixed || formulation == Formulation::fbar; }
+
+/// How the stress at the points of an element comes about. `history` is null where nothing is remembered.
+struct Origin {
+  const Law& law;
+  Formulation formulation;
+  const double* history;
+};
+
+void measure_law(const ElementPoints& points, const Origin& origin, std::size_t cell, ElementResults& results) {
   Measures measures;
-  law.measure({&points.gradient, 1}, {&measures, 1});
-  if (history) take_history(points, history, law.small_strain(), &measures.cauchy, nullptr);
+  if (splits(origin.formulation))
+    measures = measure_split(points, origin.law.split().value());
+  else
+    origin.law.measure({&points.gradient, 1}, {&measures, 1});
+  if (origin.history) take_history(points, origin.history, origin.law.small_strain(), &measures.cauchy, nullptr);
   const double volume = volume_of(points);
   for (int q = 0; q < points.count; ++q) {
     const double share = points.weight[q] / volume;
@@ -109,15 +129,28 @@ void measure_law(const ElementPoints& points, const Law& law, const double* hist
   }
 }
 
-void measure_tensors(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
-                     ElementResults& results) {
+/// First Piola stress at the points.
+Tensor<Lanes> first_piola(const ElementPoints& points, const Law& law, Formulation formulation) {
   Response response;
-  law.evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
-  if (history) take_history(points, history, law.small_strain(), nullptr, &response.P);
+  if (!splits(formulation)) {
+    law.evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
+    return response.P;
+  }
+  const Split split = law.split().value();
+  split.rest->evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
+  Tensor<Lanes> P = response.P;
+  split.constraint->evaluate(Want::stress, {&points.gradient, 1}, {&response, 1});
+  for (int k = 0; k < 9; ++k) P.c[k] += points.volume_stress * response.P.c[k];
+  return P;
+}
+
+void measure_tensors(const ElementPoints& points, const Origin& origin, std::size_t cell, ElementResults& results) {
+  Tensor<Lanes> stress = first_piola(points, origin.law, origin.formulation);
+  if (origin.history) take_history(points, origin.history, origin.law.small_strain(), nullptr, &stress);
   const double volume = volume_of(points);
   for (int q = 0; q < points.count; ++q) {
     const double share = points.weight[q] / volume;
-    const Mat3 H = at(points.gradient, q), F = Mat3::Identity() + H, P = at(response.P, q);
+    const Mat3 H = at(points.gradient, q), F = Mat3::Identity() + H, P = at(stress, q);
     add_nine(F, share, results.deformation_gradient.data() + 9 * cell);
     add_nine(P, share, results.first_piola.data() + 9 * cell);
     add_six(0.5 * (H + H.transpose() + H.transpose() * H), share, results.green_lagrange.data() + 6 * cell);
@@ -132,11 +165,11 @@ double smallest_J(const ElementPoints& points) {
   return smallest;
 }
 
-void measure_element(const ElementPoints& points, const Law& law, const double* history, std::size_t cell,
-                     const ElementRequest& request, ElementResults& results) {
-  const bool scalar = law.components() == 1;
-  if (request.law) measure_law(points, law, history, cell, results);
-  if (request.tensors) measure_tensors(points, law, history, cell, results);
+void measure_element(const ElementPoints& points, const Origin& origin, std::size_t cell, const ElementRequest& request,
+                     ElementResults& results) {
+  const bool scalar = origin.law.components() == 1;
+  if (request.law) measure_law(points, origin, cell, results);
+  if (request.tensors) measure_tensors(points, origin, cell, results);
   if (request.J) results.J[cell] = scalar ? 1 : smallest_J(points);
   if (request.rotation) results.rotation[cell] = deformation(points, scalar).largest_rotation;
 }
@@ -182,15 +215,17 @@ ElementResults Measurer::measure(const State& state, const ElementRequest& reque
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
   tbb::task_arena arena(std::min(model_.settings.threads, static_cast<int>(allowed)));
   arena.execute([&] {
-    const std::vector<ElementPoints> points = elements_->points(to_vector(numbering, state.displacement));
+    Vector u = to_vector(numbering, state.displacement);
+    if (numbering.mixed()) put_pressures(numbering, state.pressure, u);
+    const std::vector<ElementPoints> points = elements_->points(u);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t e) {
       const Region& region = model_.regions[static_cast<std::size_t>(numbering.region_of[e])];
       const std::span<const Vec3> places(points[e].place, static_cast<std::size_t>(points[e].count));
       const auto law = law_of_points(model_, region, numbering.elements[e], places);
       const bool remembers = state.history_stress && !region.prony.g.empty();
       const std::size_t offset = 6 * e * static_cast<std::size_t>(points[e].count);
-      measure_element(points[e], *law, remembers ? state.history_stress->data() + offset : nullptr,
-                      static_cast<std::size_t>(numbering.elements[e]), request, results);
+      const Origin origin{*law, model_.formulation, remembers ? state.history_stress->data() + offset : nullptr};
+      measure_element(points[e], origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
     });
   });
   return results;

@@ -11,6 +11,7 @@
 #include "solver/conditions/rigid.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
+#include "solver/elements/split_laws.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::fe {
@@ -352,6 +353,7 @@ void Model::check() const {
   check_formulation(*this);
   check_flat(*this);
   check_shapes(*this);
+  check_formulation(*this);
   check_initial(*this, "displacement", initial_displacement);
   check_initial(*this, "velocity", initial_velocity);
   if (steps.empty()) throw Error("the simulation has no step");

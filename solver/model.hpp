@@ -229,6 +229,7 @@ struct State {
   /// Viscoelastic regions: second Piola stress (xx yy zz xy yz xz; of small-strain laws the stress) at the quadrature
   /// points of all elements, in solver order; zero in elastic regions. Null where every region is elastic.
   std::shared_ptr<const std::vector<double>> history_stress = nullptr;
+  std::vector<double> pressure = {};  ///< mixed elements: #points, positive in compression; empty otherwise
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.

@@ -73,7 +73,8 @@ LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const M
 Newton::Newton(const Model& model, const Equations& equations)
     : model_(model),
       equations_(equations),
-      linear_(make_linear_system(model.settings, equations.size())),
+      linear_(equations.numbering().mixed() ? make_indefinite(model.settings.threads)
+                                            : make_linear_system(model.settings, equations.size())),
       tangent_(equations.elements().pattern()),
       effective_(equations.elements().pattern()),
       want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {
@@ -83,7 +84,8 @@ Newton::Newton(const Model& model, const Equations& equations)
     for (const int e : region.elements) survives_[static_cast<std::size_t>(e)] = region.law->survives_inversion();
   for (const Region& region : model.regions)
     barrier_ = barrier_ || (!region.law->survives_inversion() && !region.law->small_strain());
-  energetic_ = !equations.has_followers() && !equations.has_history() && model.formulation == Formulation::standard;
+  energetic_ = !equations.has_followers() && !equations.has_history() &&
+               (model.formulation == Formulation::standard || model.formulation == Formulation::fbar);
   if (equations.has_followers()) followers_ = std::make_unique<BlockMatrix>(equations.elements().pattern());
 }
 
@@ -111,6 +113,13 @@ void Newton::stiffness(const Vector& u, const ScaledLoads& loads, BlockMatrix& K
   const Stopwatch watch(seconds_assembly_);
   Forces unused;
   equations_.evaluate(u, loads, Want::definite_tangent, unused, &K);
+  // Pressures have no rate: changes of shape alone are damped.
+  const Numbering& numbering = equations_.numbering();
+  for (int row = 0; numbering.mixed() && row < K.pattern->nodes(); ++row)
+    for (int p = K.pattern->offsets[static_cast<std::size_t>(row)];
+         p < K.pattern->offsets[static_cast<std::size_t>(row) + 1]; ++p)
+      if (std::max(row, K.pattern->columns[static_cast<std::size_t>(p)]) >= numbering.body_nodes())
+        std::fill_n(K.values.begin() + 9 * static_cast<long>(p), 9, 0.0);
 }
 
 bool Newton::damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C) {
@@ -125,6 +134,14 @@ bool Newton::damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C) 
   for (const ActingLoads& acting : loads)
     if (!acting.leaving) add_dampers(acting.set->springs, equations_.positions(), u, C);
   return true;
+}
+
+bool Newton::indefinite(LinearStatus status) const {
+  const auto pressures = static_cast<long>(equations_.numbering().pressure_of.size());
+  // With a stable equilibrium each pressure adds one negative pivot (Benzi, Golub and Liesen 2005,
+  // doi 10.1017/S0962492904000212, section 3.4).
+  if (pressures > 0) return status == LinearStatus::done && linear_->negative_pivots() != pressures;
+  return status == LinearStatus::not_positive_definite;
 }
 
 Vector Newton::residual(const Increment& increment) const {
@@ -202,8 +219,9 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   if (choice != Definiteness::always && !insist_definite_) {
     const LinearStatus status = attempt(increment, jump, residual, step);
     // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
-    indefinite_ = status == LinearStatus::not_positive_definite;
-    if (!indefinite_ || choice == Definiteness::never) return status;
+    indefinite_ = indefinite(status);
+    const bool mixed = equations_.numbering().mixed();
+    if (!indefinite_ || choice == Definiteness::never || mixed) return status;
   }
   evaluate(increment, u, Want::definite_tangent, true);
   tangent_current_ = false;
@@ -231,7 +249,7 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
     const Stopwatch watch(seconds_linear_);
     effective_.values = tangent_.values;
     if (increment.slides) increment.slides->project(effective_);
-    indefinite_ = linear_->factor(effective_, increment.fixed) == LinearStatus::not_positive_definite;
+    indefinite_ = indefinite(linear_->factor(effective_, increment.fixed));
   }
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }
@@ -320,7 +338,9 @@ Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const Scal
   Vector a = Vector::Zero(u.size()), force = forces_.residual();
   supports.slides.project(mass);
   supports.slides.project(force);
-  if (solver->factor(mass, supports.fixed) == LinearStatus::done) solver->solve(force, 1e-13, a);
+  Mask still = pressure_mask(equations_.numbering(), true);
+  for (std::size_t k = 0; k < still.size(); ++k) still[k] = still[k] || supports.fixed[k];
+  if (solver->factor(mass, still) == LinearStatus::done) solver->solve(force, 1e-13, a);
   forces_.inertia.setZero();
   multiply(equations_.mass(), a, forces_.inertia);
   return a;

@@ -36,7 +36,8 @@ class Newton {
   Newton(const Model& model, const Equations& equations);
 
   /// Runs up to Settings::newton_iterations iterations; with 1, one linear solve and no convergence test.
-  /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one. A
+  /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one.
+  /// Mixed elements, whose tangent never is, keep it, and search for a smaller residual instead of a smaller energy. A
   /// static state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
   IncrementResult run(const Increment& increment);
   /// The same, first with full steps: near a time step's start they converge where a search along a sliver's sharp
@@ -84,6 +85,8 @@ class Newton {
   void take_jump(const Increment& increment, const Vector& jump, const Vector& step, Vector& u);
   /// The share of `direction` that was taken: u and the forces are at its end. 0: no share makes u better.
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
+  double residual_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
+  bool indefinite(LinearStatus status) const;
   bool accepted(const Increment& increment, const IncrementResult& result) const;
   double round_off(const Vector& u) const;
   void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
@@ -106,7 +109,7 @@ class Newton {
   double last_step_ = 0;          ///< largest entry of the last step, if it was a full one with the exact tangent
   std::vector<char> survives_;    ///< of each cell: its law survives inversion
   bool definite_taken_ = false;   ///< the last step came from the semidefinite tangent
-  bool indefinite_ = false;       ///< the last exact tangent could not be factorised
+  bool indefinite_ = false;       ///< the last exact tangent was not that of a stable equilibrium
   double round_off_ = 0;          ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;
   double seconds_assembly_ = 0, seconds_linear_ = 0;

@@ -44,7 +44,10 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
   for (Eigen::Index k = 0; k < residual.size(); ++k)
     if (!increment.fixed[static_cast<std::size_t>(k)] && std::abs(residual[k]) > worst) {
       worst = std::abs(residual[k]);
-      result.worst_node = equations_.numbering().node_of[static_cast<std::size_t>(k / 3)];
+      const Numbering& numbering = equations_.numbering();
+      const int node = static_cast<int>(k / 3), extra = node - numbering.body_nodes();
+      result.worst_node = extra < 0 ? numbering.node_of[static_cast<std::size_t>(node)]
+                                    : numbering.pressure_of[static_cast<std::size_t>(extra)];
     }
 }
 

@@ -26,7 +26,7 @@ Vector Supports::at(double share, double time) const {
 
 Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u) {
   const std::size_t size = static_cast<std::size_t>(3 * numbering.nodes());
-  Supports supports{Mask(size, 0), u, u, Mask(size, 0), {}, std::vector<int>(size, -1), {}};
+  Supports supports{pressure_mask(numbering, false), u, u, Mask(size, 0), {}, std::vector<int>(size, -1), {}};
   for (const Prescribed& condition : step.prescribed)
     for (std::size_t i = 0; i < condition.nodes.size(); ++i) {
       const int node = numbering.number_of[static_cast<std::size_t>(condition.nodes[i])];

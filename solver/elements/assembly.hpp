@@ -24,7 +24,13 @@ struct Numbering {
   std::vector<int> number_of;      ///< number of each mesh point, -1 without unknowns
   std::vector<int> element_nodes;  ///< numbers of the nodes of `elements`, element after element
   std::vector<std::array<int, 2>> links;  ///< pairs of numbered nodes that springs join
-  int nodes() const { return static_cast<int>(node_of.size()); }
+  /// Mixed elements: mesh point of each additional node. These come after the nodes of the body; their first component
+  /// is a pressure, see pressure_scale, and the other two are fixed at zero.
+  std::vector<int> pressure_of;
+  double pressure_scale = 1;  ///< stress per unit of the first component
+  int body_nodes() const { return static_cast<int>(node_of.size()); }
+  int nodes() const { return body_nodes() + static_cast<int>(pressure_of.size()); }
+  bool mixed() const { return !pressure_of.empty(); }
 };
 Numbering number(const Model& model);
 
@@ -36,9 +42,17 @@ bool is_scalar(const Model& model);
 /// Vectors always have 3 numbers per node; those that a problem does not have are fixed at zero (make_supports).
 int components(const Model& model);
 
-/// #points x 3 of the mesh from 3 numbers per numbered node (zero elsewhere), and back.
+/// 1 for the two components of each additional node that mean nothing, and for its pressure too if `all`; 0 elsewhere.
+std::vector<char> pressure_mask(const Numbering& numbering, bool all);
+
+/// #points x 3 of the mesh from 3 numbers per numbered node of the body (zero elsewhere), and back (additional nodes
+/// get zero).
 Points to_points(const Numbering& numbering, const Vector& values);
 Vector to_vector(const Numbering& numbering, const Points& values);
+/// Pressure at the points of the mesh, positive in compression: minus the multiplier p of mixed elements, linear along
+/// edges with a mid node; empty for other elements. And back into a vector as to_vector makes it.
+std::vector<double> to_pressures(const Numbering& numbering, const Vector& values);
+void put_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values);
 
 /// What an assembly found on its way.
 struct Assembled {
@@ -51,9 +65,10 @@ struct Assembled {
 /// Quadrature point values of one element, for results.
 struct ElementPoints {
   int count = 0;
-  double weight[lanes];  ///< reference volume of the point
-  Vec3 place[lanes];     ///< reference position
-  Gradients gradient;    ///< lane k: displacement gradient of point k
+  double weight[lanes];   ///< reference volume of the point
+  Vec3 place[lanes];      ///< reference position
+  Gradients gradient;     ///< lane k: displacement gradient of point k
+  Lanes volume_stress{};  ///< lane k: p in the stress P = d(rest)/dF + p dg/dF of elements that split the law
 };
 
 /// Elements of one kind. Sums are added in an order fixed by the mesh alone: results are equal bit for bit for every

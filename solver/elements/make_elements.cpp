@@ -2,7 +2,9 @@
 // Chooses the elements of a model by mesh kind and formulation.
 #include <algorithm>
 
+#include "solver/elements/mixed_elements.hpp"
 #include "solver/elements/no_elements.hpp"
+#include "solver/elements/patch_elements.hpp"
 #include "solver/elements/simplex_elements.hpp"
 #include "solver/elements/single_rotation.hpp"
 
@@ -50,6 +52,8 @@ int components(const Model& model) {
 
 std::unique_ptr<Elements> make_elements(const Model& model) {
   if (model.formulation == Formulation::single_rotation) return make_single_rotation_elements(model);
+  if (model.formulation == Formulation::mixed) return std::make_unique<MixedElements>(model);
+  if (model.formulation == Formulation::fbar) return std::make_unique<PatchElements>(model);
   return standard_elements(model, element_kind(model));
 }
 

@@ -74,6 +74,15 @@ void add_loose_parts(const Model& model, Numbering& numbering) {
     }
 }
 
+/// One additional node for each corner, in the order of the corners.
+void add_pressure_nodes(Numbering& numbering, int nodes) {
+  std::vector<char> corner(numbering.node_of.size(), 0);
+  for (std::size_t k = 0; k < numbering.element_nodes.size(); ++k)
+    if (k % static_cast<std::size_t>(nodes) < 4) corner[static_cast<std::size_t>(numbering.element_nodes[k])] = 1;
+  for (std::size_t n = 0; n < corner.size(); ++n)
+    if (corner[n]) numbering.pressure_of.push_back(numbering.node_of[n]);
+}
+
 }  // namespace
 
 Numbering number(const Model& model) {
@@ -104,21 +113,51 @@ Numbering number(const Model& model) {
     for (int a = 0; a < nodes; ++a)
       numbering.element_nodes.push_back(numbering.number_of[static_cast<std::size_t>(mesh.cell(e)[a])]);
   add_loose_parts(model, numbering);
+  if (model.formulation == Formulation::mixed) add_pressure_nodes(numbering, nodes);
   return numbering;
 }
 
 Points to_points(const Numbering& numbering, const Vector& values) {
   Points points = Points::Zero(static_cast<Eigen::Index>(numbering.number_of.size()), 3);
-  for (int n = 0; n < numbering.nodes(); ++n)
+  for (int n = 0; n < numbering.body_nodes(); ++n)
     points.row(numbering.node_of[static_cast<std::size_t>(n)]) = values.segment<3>(3 * n).transpose();
   return points;
 }
 
 Vector to_vector(const Numbering& numbering, const Points& values) {
-  Vector vector(3 * numbering.nodes());
-  for (int n = 0; n < numbering.nodes(); ++n)
+  Vector vector = Vector::Zero(3 * numbering.nodes());
+  for (int n = 0; n < numbering.body_nodes(); ++n)
     vector.segment<3>(3 * n) = values.row(numbering.node_of[static_cast<std::size_t>(n)]).transpose();
   return vector;
+}
+
+std::vector<char> pressure_mask(const Numbering& numbering, bool all) {
+  std::vector<char> mask(static_cast<std::size_t>(3 * numbering.nodes()), 0);
+  for (std::size_t k = static_cast<std::size_t>(3 * numbering.body_nodes()); k < mask.size(); ++k)
+    mask[k] = all || k % 3 > 0;
+  return mask;
+}
+
+std::vector<double> to_pressures(const Numbering& numbering, const Vector& values) {
+  if (!numbering.mixed()) return {};
+  constexpr int nodes = 10, edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  std::vector<double> pressures(numbering.number_of.size(), 0);
+  const auto at = [&](std::size_t element, int a) -> double& {
+    const int node = numbering.element_nodes[nodes * element + static_cast<std::size_t>(a)];
+    return pressures[static_cast<std::size_t>(numbering.node_of[static_cast<std::size_t>(node)])];
+  };
+  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
+    pressures[static_cast<std::size_t>(numbering.pressure_of[k])] =
+        -numbering.pressure_scale * values[3 * (numbering.body_nodes() + static_cast<int>(k))];
+  for (std::size_t e = 0; e < numbering.elements.size(); ++e)
+    for (int m = 0; m < 6; ++m) at(e, 4 + m) = 0.5 * (at(e, edges[m][0]) + at(e, edges[m][1]));
+  return pressures;
+}
+
+void put_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values) {
+  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
+    values[3 * (numbering.body_nodes() + static_cast<int>(k))] =
+        -pressures[static_cast<std::size_t>(numbering.pressure_of[k])] / numbering.pressure_scale;
 }
 
 }  // namespace msml::fe

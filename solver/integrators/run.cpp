@@ -18,7 +18,8 @@ State Run::state() const {
           to_points(numbering, now.a),
           to_points(numbering, now.reaction),
           now.energies,
-          equations.elements().history_stress()};
+          equations.elements().history_stress(),
+          to_pressures(numbering, now.u)};
 }
 
 bool Run::accept() {

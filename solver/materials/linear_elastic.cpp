@@ -60,8 +60,10 @@ class TraceConstraint final : public Law {
   }
   void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
-      const Polar<Lanes> p = decompose(gradients[i]);
-      measures[i] = {.cauchy = p.R, .strain = p.strain, .energy = trace(p.strain)};
+      const bool small = data_.strain == Strain::small;
+      const Tensor<Lanes> strain = small ? sym(gradients[i]) : decompose(gradients[i]).strain;
+      measures[i] = {.cauchy = {}, .strain = strain, .energy = trace(strain)};
+      for (int k = 0; k < 3; ++k) measures[i].cauchy(k, k) += 1.0;  // R I R^T
     }
   }
   std::string name() const override { return "trace"; }

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inner products that every element of solids is made of, eight elements at a time.
+#pragma once
+#include <cmath>
+#include <cstring>
+
+#include "solver/elements/assembly.hpp"
+
+namespace msml::fe {
+
+/// Place of entry (i, j) of a symmetric matrix in its lower triangle by rows.
+constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
+
+/// values[3 n] for the nodes a of eight elements.
+template <class Batch>
+Lanes gather(const Batch& batch, int a, const double* values) {
+  alignas(Lanes) double out[lanes];
+  for (int lane = 0; lane < lanes; ++lane) out[lane] = values[3 * batch.node[lane][a]];
+  Lanes result;
+  std::memcpy(&result, out, sizeof result);
+  return result;
+}
+
+/// a . b of two vectors of `dimension` lanes.
+template <int dimension>
+Lanes inner(const Lanes* a, const Lanes* b) {
+  Lanes sum = a[0] * b[0];
+  for (int k = 1; k < dimension; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// force_a += w P g_a, with g_a = dN_a/dX.
+template <int dimension, int nodes>
+void add_force(const Tensor<Lanes>& P, Lanes w, const Lanes (&g)[nodes][dimension], Lanes (&force)[nodes][dimension]) {
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < dimension; ++i) force[a][i] += w * inner<dimension>(P.c + 3 * i, g[a]);
+}
+
+/// block_ab(i, j) += w sum_kl g_a,k A_(ik)(jl) g_b,l for a <= b, block (a, b) at packed(b, a).
+template <int dimension, int nodes, int blocks>
+void add_stiffness(const Lanes* A, Lanes w, const Lanes (&g)[nodes][dimension],
+                   Lanes (&block)[blocks][dimension * dimension]) {
+  for (int b = 0; b < nodes; ++b) {
+    Lanes scaled[dimension];
+    for (int l = 0; l < dimension; ++l) scaled[l] = w * g[b][l];
+    Lanes half[dimension][dimension][dimension];  // A contracted with g_b: i, j, k
+    for (int i = 0; i < dimension; ++i)
+      for (int k = 0; k < dimension; ++k)
+        for (int j = 0; j < dimension; ++j) {
+          Lanes sum = A[packed(3 * i + k, 3 * j)] * scaled[0];
+          for (int l = 1; l < dimension; ++l) sum += A[packed(3 * i + k, 3 * j + l)] * scaled[l];
+          half[i][j][k] = sum;
+        }
+    for (int a = 0; a <= b; ++a)
+      for (int i = 0; i < dimension; ++i)
+        for (int j = 0; j < dimension; ++j)
+          block[packed(b, a)][dimension * i + j] += inner<dimension>(g[a], half[i][j]);
+  }
+}
+
+/// det F of F = I + H.
+inline Lanes volume_ratio(const Gradients& H) {
+  Tensor<Lanes> F = H;
+  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+  return determinant(F);
+}
+
+/// Notes energies (with the weight) and det F of the first `count` lanes; `elements` are their cell ids.
+inline void note(const Lanes& energy, const Lanes& J, int count, const int* elements, Assembled& found) {
+  for (int lane = 0; lane < count; ++lane) {
+    found.energy += energy[lane];
+    if (!std::isfinite(energy[lane]) || !std::isfinite(J[lane])) found.finite = false;
+    if (J[lane] < found.smallest_J) {
+      found.smallest_J = J[lane];
+      found.smallest_J_element = elements[lane];
+    }
+  }
+}
+
+/// Adds what another part of the elements gave.
+inline void merge(Assembled& sum, const Assembled& part) {
+  sum.energy += part.energy;
+  sum.finite = sum.finite && part.finite;
+  if (part.smallest_J < sum.smallest_J) {
+    sum.smallest_J = part.smallest_J;
+    sum.smallest_J_element = part.smallest_J_element;
+  }
+}
+
+}  // namespace msml::fe

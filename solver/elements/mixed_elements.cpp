@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loops over elements with a pressure of their own.
+#include "solver/elements/mixed_elements.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include "solver/elements/element_sums.hpp"
+#include "solver/elements/mass.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int body = MixedBatch::body, corners = MixedBatch::corners, nodes = MixedBatch::nodes;
+
+/// Internal forces and the blocks of the tangent.
+struct Result {
+  Lanes force[body][3];
+  Lanes volume[corners];                  ///< of the constraint
+  Lanes block[body * (body + 1) / 2][9];  ///< displacement: (a, b), a <= b, at packed(b, a)
+  Lanes coupling[body][corners][3];       ///< displacement by pressure
+  Lanes pressure[corners][corners];
+};
+
+/// The ten nodes of each element and the additional nodes of its corners.
+std::vector<int> with_pressure_nodes(const Numbering& numbering) {
+  std::vector<int> extra(static_cast<std::size_t>(numbering.body_nodes()), -1);
+  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
+    extra[static_cast<std::size_t>(numbering.number_of[static_cast<std::size_t>(numbering.pressure_of[k])])] =
+        numbering.body_nodes() + static_cast<int>(k);
+  std::vector<int> list;
+  for (auto node = numbering.element_nodes.begin(); node != numbering.element_nodes.end(); node += body) {
+    list.insert(list.end(), node, node + body);
+    for (int c = 0; c < corners; ++c) list.push_back(extra[static_cast<std::size_t>(node[c])]);
+  }
+  return list;
+}
+
+void scatter_force(const MixedBatch& batch, const Result& result, Vector& force) {
+  for (int lane = 0; lane < batch.count; ++lane) {
+    for (int a = 0; a < body; ++a)
+      for (int i = 0; i < 3; ++i) force[3 * batch.node[lane][a] + i] += result.force[a][i][lane];
+    for (int c = 0; c < corners; ++c) force[3 * batch.node[lane][body + c]] += result.volume[c][lane];
+  }
+}
+
+void scatter_stiffness(const MixedBatch& batch, const Result& result, BlockMatrix& matrix) {
+  for (int lane = 0; lane < batch.count; ++lane) {
+    const auto at = [&](int a, int b) {
+      return matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][a * nodes + b]);
+    };
+    for (int b = 0; b < body; ++b)
+      for (int a = 0; a <= b; ++a) {
+        const Lanes* block = result.block[packed(b, a)];
+        double *upper = at(a, b), *lower = at(b, a);
+        for (int i = 0; i < 9; ++i) upper[i] += block[i][lane];
+        if (a == b) continue;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) lower[3 * j + i] += block[3 * i + j][lane];
+      }
+    for (int c = 0; c < corners; ++c) {
+      for (int a = 0; a < body; ++a) {
+        double *right = at(a, body + c), *left = at(body + c, a);
+        for (int i = 0; i < 3; ++i) {
+          right[3 * i] += result.coupling[a][c][i][lane];
+          left[i] += result.coupling[a][c][i][lane];
+        }
+      }
+      for (int d = 0; d < corners; ++d) *at(body + c, body + d) += result.pressure[c][d][lane];
+    }
+  }
+}
+
+}  // namespace
+
+/// What a quadrature point sees.
+struct MixedElements::Values {
+  Lanes g[body][3];  ///< dN_a/dX
+  Gradients H;
+  Lanes p;
+};
+
+MixedElements::MixedElements(const Model& model) : numbering_(number(model)), positions_(model.mesh->points) {
+  const Rule<3> rule = four_point_rule();
+  for (std::size_t q = 0; q < rule.size(); ++q) {
+    reference_gradients_[q] = Tetrahedron<body>::gradients(rule[q].xi);
+    barycentric_[q] = Tetrahedron<body>::barycentric(rule[q].xi);
+  }
+  for (const int node : numbering_.element_nodes) cells_.push_back(numbering_.node_of[static_cast<std::size_t>(node)]);
+  for (const Region& region : model.regions) densities_.push_back(region.density);
+  const std::vector<int> element_nodes = with_pressure_nodes(numbering_);
+  pattern_ = make_pattern(numbering_.nodes(), element_nodes, nodes, numbering_.links);
+  make_batches(model, element_nodes);
+  set_scale(model);
+}
+
+void MixedElements::make_batches(const Model& model, const std::vector<int>& element_nodes) {
+  const int all = static_cast<int>(numbering_.elements.size());
+  std::vector<std::vector<int>> batch_nodes;
+  for (int first = 0; first < all;) {
+    MixedBatch batch;
+    batch.first = first;
+    batch.region = numbering_.region_of[static_cast<std::size_t>(first)];
+    while (batch.count < lanes && first + batch.count < all &&
+           numbering_.region_of[static_cast<std::size_t>(first + batch.count)] == batch.region)
+      ++batch.count;
+    batch_nodes.emplace_back(element_nodes.begin() + nodes * first,
+                             element_nodes.begin() + nodes * (first + batch.count));
+    first += batch.count;
+    batches_.push_back(batch);
+  }
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) { fill(batches_[b], model, element_nodes); });
+  colours_ = colour_chunks(batch_nodes, numbering_.nodes());
+}
+
+void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const {
+  const Rule<3> rule = four_point_rule();
+  for (int lane = 0; lane < lanes; ++lane) {
+    const int e = batch.first + std::min(lane, batch.count - 1);
+    std::copy_n(element_nodes.begin() + nodes * e, nodes, batch.node[lane]);
+    for (int a = 0; a < nodes; ++a)
+      for (int b = 0; b < nodes; ++b)
+        batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
+    const int* ids = cells_.data() + body * e;
+    for (std::size_t q = 0; q < rule.size(); ++q) {
+      const Mat3 J = jacobian<3, body>(positions_, ids, rule[q].xi), inverse = J.inverse();
+      for (int k = 0; k < 9; ++k) batch.point[q].inverse.c[k][lane] = inverse(k / 3, k % 3);
+      batch.point[q].weight[lane] = lane < batch.count ? rule[q].weight * J.determinant() : 0.0;
+    }
+  }
+  batch.law = split_of(model.regions[static_cast<std::size_t>(batch.region)],
+                       {numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count)});
+}
+
+// A shear modulus over an element's size: pressures then have the size of displacements, and the constraint that of
+// forces.
+void MixedElements::set_scale(const Model& model) {
+  double volume = 0, modulus = 0;
+  for (const MixedBatch& batch : batches_)
+    for (const MixedBatch::Point& point : batch.point)
+      for (int lane = 0; lane < batch.count; ++lane) {
+        volume += point.weight[lane];
+        modulus += point.weight[lane] * model.regions[static_cast<std::size_t>(batch.region)].law->shear_modulus();
+      }
+  const double size = std::cbrt(volume / static_cast<double>(numbering_.elements.size()));
+  numbering_.pressure_scale = modulus / volume / size;
+}
+
+MixedElements::Values MixedElements::values(const MixedBatch& batch, int q, const Vector& u) const {
+  const Tensor<Lanes>& inverse = batch.point[q].inverse;
+  Values at{};
+  for (int a = 0; a < body; ++a) {
+    const auto& r = reference_gradients_[static_cast<std::size_t>(q)][static_cast<std::size_t>(a)];
+    for (int k = 0; k < 3; ++k) at.g[a][k] = r[0] * inverse(0, k) + r[1] * inverse(1, k) + r[2] * inverse(2, k);
+    for (int i = 0; i < 3; ++i) {
+      const Lanes value = gather(batch, a, u.data() + i);
+      for (int k = 0; k < 3; ++k) at.H(i, k) += value * at.g[a][k];
+    }
+  }
+  for (int c = 0; c < corners; ++c)
+    at.p += barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)] * numbering_.pressure_scale *
+            gather(batch, body + c, u.data());
+  return at;
+}
+
+Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Want want, Vector& force,
+                                   BlockMatrix* matrix) const {
+  constexpr int count = MixedBatch::points;
+  Values at[count];
+  Gradients H[count];
+  Response rest[count], volume[count];
+  for (int q = 0; q < count; ++q) {
+    at[q] = values(batch, q, u);
+    H[q] = at[q].H;
+  }
+  const bool definite = want == Want::definite_tangent;
+  batch.law.rest->evaluate(want, {H, count}, {rest, count});
+  batch.law.constraint->evaluate(definite ? Want::stress : want, {H, count}, {volume, count});
+
+  Assembled found;
+  Result result{};
+  for (int q = 0; q < count; ++q) {
+    const Lanes w = batch.point[q].weight, p = at[q].p, g = volume[q].energy;
+    Response& sum = rest[q];
+    for (int k = 0; k < 9; ++k) sum.P.c[k] += p * volume[q].P.c[k];
+    add_force<3, body>(sum.P, w, at[q].g, result.force);
+    Lanes share[corners];
+    for (int c = 0; c < corners; ++c) {
+      share[c] = barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)] * numbering_.pressure_scale * w;
+      result.volume[c] += share[c] * (g - p * batch.law.compliance);
+    }
+    note(w * (sum.energy + p * g - 0.5 * p * p * batch.law.compliance), volume_ratio(H[q]), batch.count,
+         numbering_.elements.data() + batch.first, found);
+    if (!matrix) continue;
+    for (int k = 0; k < 45 && !definite; ++k) sum.tangent[k] += p * volume[q].tangent[k];
+    add_stiffness<3, body>(sum.tangent, w, at[q].g, result.block);
+    for (int c = 0; c < corners; ++c) {
+      for (int a = 0; a < body; ++a)
+        for (int i = 0; i < 3; ++i) result.coupling[a][c][i] += share[c] * inner<3>(volume[q].P.c + 3 * i, at[q].g[a]);
+      for (int d = 0; d < corners; ++d)
+        result.pressure[c][d] -= share[c] * batch.law.compliance * numbering_.pressure_scale *
+                                 barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(d)];
+    }
+  }
+  scatter_force(batch, result, force);
+  if (matrix) scatter_stiffness(batch, result, *matrix);
+  return found;
+}
+
+Assembled MixedElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+  Assembled sum;
+  for (const auto& chunks : colours_) {
+    std::vector<Assembled> parts(chunks.size());
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b)
+        merge(parts[c], add_batch(batches_[static_cast<std::size_t>(b)], u, want, force, matrix));
+    });
+    for (const Assembled& part : parts) merge(sum, part);
+  }
+  return sum;
+}
+
+void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
+  for (const MixedBatch& batch : batches_)
+    for (int lane = 0; lane < batch.count; ++lane) {
+      const int* ids = cells_.data() + body * (batch.first + lane);
+      ElementMass<body> M =
+          consistent_mass<3, body>(positions_, ids, densities_[static_cast<std::size_t>(batch.region)]);
+      if (lumped) M = lumped_mass<body>(M);
+      for (int a = 0; a < body; ++a)
+        for (int b = 0; b < body; ++b)
+          mass.values[static_cast<std::size_t>(batch.position[lane][a * nodes + b])] += M(a, b);
+    }
+}
+
+std::vector<ElementPoints> MixedElements::points(const Vector& u) const {
+  std::vector<ElementPoints> found(numbering_.elements.size());
+  const Rule<3> rule = four_point_rule();
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    const MixedBatch& batch = batches_[b];
+    for (int q = 0; q < MixedBatch::points; ++q) {
+      const Values at = values(batch, q, u);
+      for (int lane = 0; lane < batch.count; ++lane) {
+        ElementPoints& out = found[static_cast<std::size_t>(batch.first + lane)];
+        if (q == 0) out = {};
+        const int* ids = cells_.data() + body * (batch.first + lane);
+        out.count = q + 1;
+        out.place[q] = place<3, body>(positions_, ids, rule[static_cast<std::size_t>(q)].xi);
+        out.weight[q] = batch.point[q].weight[lane];
+        out.volume_stress[q] = at.p[lane];
+        for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = at.H.c[k][lane];
+      }
+    }
+  });
+  return found;
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tetrahedra with quadratic displacement and linear pressure (Taylor and Hood), eight at a time.
+#pragma once
+#include "solver/elements/assembly.hpp"
+#include "solver/elements/chunks.hpp"
+#include "solver/elements/shapes.hpp"
+#include "solver/elements/split_laws.hpp"
+
+namespace msml::fe {
+
+/// Eight elements of one region side by side. Unused lanes of the last batch repeat an element with weight 0.
+struct MixedBatch {
+  static constexpr int body = 10, corners = 4, nodes = body + corners, points = 4;
+  struct Point {
+    Tensor<Lanes> inverse;  ///< dxi/dX
+    Lanes weight;           ///< reference volume of the point
+  };
+  int region = 0, count = 0;
+  int first = 0;                       ///< place in Numbering::elements of lane 0; the lanes follow
+  int node[lanes][nodes];              ///< ten nodes of the body, then the pressure nodes of the corners
+  int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
+  Point point[points];
+  BatchSplit law;
+};
+
+/// Stationary points of int rest(F) + p g(F) - p^2/(2 k) with the pressure p continuous and linear in each element: the
+/// perturbed Lagrangian, for k = infinity that of the constraint g = 0 (Sussman and Bathe 1987,
+/// doi 10.1016/0045-7949(87)90265-3; stable pair: Taylor and Hood 1973, doi 10.1016/0045-7930(73)90027-3).
+/// p = Numbering::pressure_scale times the first component of the additional node of each corner. The tangent is
+/// symmetric and indefinite. Want::definite_tangent leaves out p d2g/dF2.
+class MixedElements final : public Elements {
+ public:
+  explicit MixedElements(const Model& model);
+  Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
+  void add_mass(bool lumped, ScalarMatrix& mass) const override;
+  std::vector<ElementPoints> points(const Vector& u) const override;
+  const Numbering& numbering() const override { return numbering_; }
+  const PatternPtr& pattern() const override { return pattern_; }
+
+ private:
+  struct Values;
+  void make_batches(const Model& model, const std::vector<int>& element_nodes);
+  void fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const;
+  void set_scale(const Model& model);
+  Values values(const MixedBatch& batch, int q, const Vector& u) const;
+  Assembled add_batch(const MixedBatch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
+
+  Numbering numbering_;
+  PatternPtr pattern_;
+  Points positions_;        ///< reference positions of the mesh
+  std::vector<int> cells_;  ///< mesh points of the ten nodes of each element of numbering()
+  std::vector<double> densities_;
+  std::vector<MixedBatch> batches_;
+  std::vector<std::vector<Chunk>> colours_;
+  std::array<std::array<std::array<double, 3>, MixedBatch::body>, MixedBatch::points> reference_gradients_;
+  std::array<std::array<double, MixedBatch::corners>, MixedBatch::points> barycentric_;
+};
+
+}  // namespace msml::fe

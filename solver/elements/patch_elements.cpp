@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loops over patches of linear tetrahedra.
+#include "solver/elements/patch_elements.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "solver/elements/element_sums.hpp"
+#include "solver/elements/mass.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int patch_size = 8;
+constexpr int most_batches = patch_limit / lanes;
+constexpr int most_nodes = patch_limit + 3;  // each element behind a face adds at most one
+
+/// What the law gives in one batch.
+struct Evaluated {
+  Response rest, volume;
+  Lanes J;
+};
+
+Gradients gradient(const PatchBatch& batch, const Vector& u) {
+  Gradients H{};
+  for (int a = 0; a < 4; ++a)
+    for (int i = 0; i < 3; ++i) {
+      const Lanes value = gather(batch, a, u.data() + i);
+      for (int k = 0; k < 3; ++k) H(i, k) += value * batch.g[a][k];
+    }
+  return H;
+}
+
+double sum(const Lanes& x) {
+  double total = 0;
+  for (int lane = 0; lane < lanes; ++lane) total += x[lane];
+  return total;
+}
+
+/// Force and stiffness of one batch with the patch's p = k gbar; d += sum V dg/du, node after node of the patch.
+void add_batch(const PatchBatch& batch, const Patch& patch, const Evaluated& at, double p, bool definite, double* d,
+               Vector& force, BlockMatrix* matrix) {
+  Response law = at.rest;
+  for (int k = 0; k < 9; ++k) law.P.c[k] += p * at.volume.P.c[k];
+  Lanes pull[4][3] = {}, slope[4][3] = {};
+  add_force<3, 4>(law.P, batch.weight, batch.g, pull);
+  if (matrix) add_force<3, 4>(at.volume.P, batch.weight, batch.g, slope);
+  for (int lane = 0; lane < batch.count; ++lane)
+    for (int a = 0; a < 4; ++a)
+      for (int i = 0; i < 3; ++i) {
+        force[3 * batch.node[lane][a] + i] += pull[a][i][lane];
+        d[3 * batch.local[lane][a] + i] += slope[a][i][lane];
+      }
+  if (!matrix) return;
+  for (int k = 0; k < 45 && !definite; ++k) law.tangent[k] += p * at.volume.tangent[k];
+  Lanes block[10][9] = {};
+  add_stiffness<3, 4>(law.tangent, batch.weight, batch.g, block);
+  const std::size_t nodes = patch.nodes.size();
+  for (int lane = 0; lane < batch.count; ++lane)
+    for (int b = 0; b < 4; ++b)
+      for (int a = 0; a <= b; ++a) {
+        const auto one = static_cast<std::size_t>(batch.local[lane][a]),
+                   two = static_cast<std::size_t>(batch.local[lane][b]);
+        double* upper = matrix->values.data() + 9 * static_cast<std::size_t>(patch.positions[one * nodes + two]);
+        double* lower = matrix->values.data() + 9 * static_cast<std::size_t>(patch.positions[two * nodes + one]);
+        for (int k = 0; k < 9; ++k) upper[k] += block[packed(b, a)][k][lane];
+        if (a == b) continue;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) lower[3 * j + i] += block[packed(b, a)][3 * i + j][lane];
+      }
+}
+
+/// matrix += factor d d^T.
+void add_coupling(const Patch& patch, double factor, const double* d, BlockMatrix& matrix) {
+  const std::size_t nodes = patch.nodes.size();
+  for (std::size_t a = 0; a < nodes; ++a)
+    for (std::size_t b = 0; b < nodes; ++b) {
+      double* out = matrix.values.data() + 9 * static_cast<std::size_t>(patch.positions[a * nodes + b]);
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 3; ++j) out[3 * i + j] += factor * d[3 * a + i] * d[3 * b + j];
+    }
+}
+
+}  // namespace
+
+PatchElements::PatchElements(const Model& model) : numbering_(number(model)), positions_(model.mesh->points) {
+  for (const Region& region : model.regions) densities_.push_back(region.density);
+  for (const std::vector<int>& elements : make_patches(numbering_, patch_size)) make_patch(elements, model);
+  find_positions();
+  std::vector<std::vector<int>> patch_nodes;
+  for (const Patch& patch : patches_) patch_nodes.push_back(patch.nodes);
+  colours_ = colour_chunks(patch_nodes, numbering_.nodes());
+}
+
+void PatchElements::make_patch(const std::vector<int>& elements, const Model& model) {
+  Patch patch;
+  patch.region = numbering_.region_of[static_cast<std::size_t>(elements.front())];
+  patch.first_batch = static_cast<int>(batches_.size());
+  for (const int e : elements)
+    patch.nodes.insert(patch.nodes.end(), numbering_.element_nodes.begin() + 4 * e,
+                       numbering_.element_nodes.begin() + 4 * e + 4);
+  std::sort(patch.nodes.begin(), patch.nodes.end());
+  patch.nodes.erase(std::unique(patch.nodes.begin(), patch.nodes.end()), patch.nodes.end());
+  for (std::size_t first = 0; first < elements.size(); first += lanes) {
+    PatchBatch batch;
+    batch.count = static_cast<int>(std::min<std::size_t>(lanes, elements.size() - first));
+    for (int lane = 0; lane < lanes; ++lane)
+      batch.element[lane] = elements[first + static_cast<std::size_t>(std::min(lane, batch.count - 1))];
+    fill(batch, patch, model);
+    patch.volume += sum(batch.weight);
+    for (int lane = 0; lane < batch.count; ++lane) patch.modulus += batch.weight[lane] * batch.law.modulus[lane];
+    batches_.push_back(batch);
+  }
+  patch.modulus /= patch.volume;
+  patch.batches = static_cast<int>(batches_.size()) - patch.first_batch;
+  patches_.push_back(patch);
+}
+
+void PatchElements::fill(PatchBatch& batch, const Patch& patch, const Model& model) {
+  const auto reference = Tetrahedron<4>::gradients({0.25, 0.25, 0.25});
+  for (int lane = 0; lane < lanes; ++lane) {
+    const std::size_t e = static_cast<std::size_t>(batch.element[lane]);
+    batch.cell[lane] = numbering_.elements[e];
+    for (int a = 0; a < 4; ++a) {
+      const int node = batch.node[lane][a] = numbering_.element_nodes[4 * e + static_cast<std::size_t>(a)];
+      const auto place = std::lower_bound(patch.nodes.begin(), patch.nodes.end(), node);
+      batch.local[lane][a] = static_cast<int>(place - patch.nodes.begin());
+    }
+    const Mat3 J = jacobian<3, 4>(positions_, model.mesh->cell(batch.cell[lane]), {0.25, 0.25, 0.25}),
+               inverse = J.inverse();
+    batch.weight[lane] = lane < batch.count ? J.determinant() / 6 : 0.0;
+    for (int a = 0; a < 4; ++a)
+      for (int k = 0; k < 3; ++k)
+        batch.g[a][k][lane] =
+            Eigen::Map<const Eigen::RowVector3d>(reference[static_cast<std::size_t>(a)].data()) * inverse.col(k);
+  }
+  batch.law = split_of(model.regions[static_cast<std::size_t>(patch.region)],
+                       {batch.cell, static_cast<std::size_t>(batch.count)});
+}
+
+void PatchElements::find_positions() {
+  std::size_t width = 0;
+  for (const Patch& patch : patches_) width = std::max(width, patch.nodes.size());
+  std::vector<int> lists;  // of equal length: the last node repeated
+  for (const Patch& patch : patches_) {
+    lists.insert(lists.end(), patch.nodes.begin(), patch.nodes.end());
+    lists.insert(lists.end(), width - patch.nodes.size(), patch.nodes.back());
+  }
+  pattern_ = make_pattern(numbering_.nodes(), lists, static_cast<int>(width), numbering_.links);
+  for (Patch& patch : patches_)
+    for (const int a : patch.nodes)
+      for (const int b : patch.nodes) patch.positions.push_back(pattern_->find(a, b));
+}
+
+Assembled PatchElements::add_patch(const Patch& patch, const Vector& u, Want want, Vector& force,
+                                   BlockMatrix* matrix) const {
+  Evaluated at[most_batches];
+  const PatchBatch* batches = batches_.data() + patch.first_batch;
+  const bool definite = want == Want::definite_tangent;
+  double gbar = 0;
+  for (int b = 0; b < patch.batches; ++b) {
+    const Gradients H = gradient(batches[b], u);
+    batches[b].law.rest->evaluate(want, {&H, 1}, {&at[b].rest, 1});
+    batches[b].law.constraint->evaluate(definite ? Want::stress : want, {&H, 1}, {&at[b].volume, 1});
+    at[b].J = volume_ratio(H);
+    gbar += sum(batches[b].weight * at[b].volume.energy) / patch.volume;
+  }
+  Assembled found;
+  double d[3 * most_nodes] = {};
+  for (int b = 0; b < patch.batches; ++b) {
+    note(batches[b].weight * at[b].rest.energy, at[b].J, batches[b].count, batches[b].cell, found);
+    add_batch(batches[b], patch, at[b], patch.modulus * gbar, definite, d, force, matrix);
+  }
+  if (matrix) add_coupling(patch, patch.modulus / patch.volume, d, *matrix);
+  found.energy += 0.5 * patch.volume * patch.modulus * gbar * gbar;
+  found.finite = found.finite && std::isfinite(gbar);
+  return found;
+}
+
+Assembled PatchElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+  Assembled sum;
+  for (const auto& chunks : colours_) {
+    std::vector<Assembled> parts(chunks.size());
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int p = chunks[c].first; p < chunks[c].last; ++p)
+        merge(parts[c], add_patch(patches_[static_cast<std::size_t>(p)], u, want, force, matrix));
+    });
+    for (const Assembled& part : parts) merge(sum, part);
+  }
+  return sum;
+}
+
+void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
+  for (const Patch& patch : patches_)
+    for (int b = patch.first_batch; b < patch.first_batch + patch.batches; ++b) {
+      const PatchBatch& batch = batches_[static_cast<std::size_t>(b)];
+      for (int lane = 0; lane < batch.count; ++lane) {
+        int ids[4];
+        for (int a = 0; a < 4; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
+        ElementMass<4> M = consistent_mass<3, 4>(positions_, ids, densities_[static_cast<std::size_t>(patch.region)]);
+        if (lumped) M = lumped_mass<4>(M);
+        for (int i = 0; i < 4; ++i)
+          for (int j = 0; j < 4; ++j) {
+            const std::size_t place = static_cast<std::size_t>(batch.local[lane][i]) * patch.nodes.size() +
+                                      static_cast<std::size_t>(batch.local[lane][j]);
+            mass.values[static_cast<std::size_t>(patch.positions[place])] += M(i, j);
+          }
+      }
+    }
+}
+
+std::vector<ElementPoints> PatchElements::points(const Vector& u) const {
+  std::vector<ElementPoints> found(numbering_.elements.size());
+  tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t p) {
+    const Patch& patch = patches_[p];
+    double gbar = 0;
+    for (int b = 0; b < patch.batches; ++b) {
+      const PatchBatch& batch = batches_[static_cast<std::size_t>(patch.first_batch + b)];
+      const Gradients H = gradient(batch, u);
+      Response volume;
+      batch.law.constraint->evaluate(Want::stress, {&H, 1}, {&volume, 1});
+      gbar += sum(batch.weight * volume.energy) / patch.volume;
+      for (int lane = 0; lane < batch.count; ++lane) {
+        ElementPoints& out = found[static_cast<std::size_t>(batch.element[lane])];
+        out = {};
+        out.count = 1;
+        out.weight[0] = batch.weight[lane];
+        out.place[0] = Vec3::Zero();
+        for (int a = 0; a < 4; ++a) {
+          const auto node = static_cast<std::size_t>(batch.node[lane][a]);
+          out.place[0] += 0.25 * positions_.row(numbering_.node_of[node]).transpose();
+        }
+        for (int k = 0; k < 9; ++k) out.gradient.c[k][0] = H.c[k][lane];
+      }
+    }
+    for (int b = 0; b < patch.batches; ++b) {
+      const PatchBatch& batch = batches_[static_cast<std::size_t>(patch.first_batch + b)];
+      for (int lane = 0; lane < batch.count; ++lane)
+        found[static_cast<std::size_t>(batch.element[lane])].volume_stress[0] = patch.modulus * gbar;
+    }
+  });
+  return found;
+}
+
+}  // namespace msml::fe
