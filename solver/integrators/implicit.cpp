@@ -53,6 +53,15 @@ bool advance(Run& run, Increment& increment, const Supports& supports, double ti
   return true;
 }
 
+/// Supports that move by functions of time have the velocity and acceleration of these. Backward Euler takes
+/// differences, as it does everywhere.
+void follow(const Supports& supports, double time, Kinematics& motion) {
+  if (supports.moved.empty()) return;
+  motion.given.assign(supports.fixed.size(), 0);
+  motion.given_velocity = motion.given_acceleration = Vector::Zero(motion.start.size());
+  supports.drive(time, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
+}
+
 }  // namespace
 
 void run_implicit(Run& run) {
@@ -80,6 +89,7 @@ void run_implicit(Run& run) {
                           nullptr,
                           {},
                           &supports.slides};
+      if (model.settings.integrator != Integrator::implicit_euler) follow(supports, time, increment.motion);
       if (!advance(run, increment, supports, time, C) || !run.accept()) return;
     }
   }
