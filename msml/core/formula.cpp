@@ -49,13 +49,10 @@ std::string words_for(const std::string& text, const mu::Parser::exception_type&
   const auto at = static_cast<std::size_t>(std::max(0, fault.GetPos()));
   const std::string place =
       at < text.size() ? fmt::format("'{}' at position {}", shortened(token_at(text, at)), at + 1) : "the end";
+  if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) return place + " is unknown";
+  if (fault.GetCode() == mu::ecMISSING_PARENS) return "a closing parenthesis is missing";
+  if (at >= text.size()) return "it ends too early";
   switch (fault.GetCode()) {
-    case mu::ecUNASSIGNABLE_TOKEN:
-      return place + " is unknown";
-    case mu::ecMISSING_PARENS:
-      return "a closing parenthesis is missing";
-    case mu::ecUNEXPECTED_EOF:
-      return "it ends too early";
     case mu::ecTOO_FEW_PARAMS:
       return "a function before " + place + " has too few arguments";
     case mu::ecTOO_MANY_PARAMS:
@@ -133,8 +130,8 @@ double Function::operator()(const Eigen::Vector3d& X, double t) const {
   const double value = parsed_->at(X, t);
   if (!parsed_->range.contains(value))
     throw Error(fmt::format("{} = {} is {} at X = {:g}, Y = {:g}, Z = {:g}, t = {:g}, which is not {}", parsed_->name,
-                            shortened(parsed_->formula.text), value, X[0], X[1], X[2], t,
-                            std::isfinite(value) ? parsed_->range.str() : "finite"),
+                            shortened(parsed_->formula.text), std::isnan(value) ? "nan" : fmt::format("{}", value),
+                            X[0], X[1], X[2], t, std::isfinite(value) ? parsed_->range.str() : "finite"),
                 parsed_->where);
   return value;
 }

@@ -39,6 +39,18 @@ struct Trial {
   Vector velocity, acceleration;
 };
 
+/// Supports that move by functions of time have the velocity and acceleration of these. Backward Euler takes
+/// differences, as it does everywhere.
+void follow(const Supports& supports, double time, Kinematics& motion) {
+  if (supports.moved.empty()) return;
+  motion.given.assign(supports.fixed.size(), 0);
+  motion.given_velocity = motion.given_acceleration = Vector::Zero(motion.start.size());
+  // Where the balance holds between the ends of the step, the accelerations at the ends belong to times apart from
+  // them.
+  const double shift = (motion.force_share - motion.inertia_share) * motion.dt;
+  supports.drive(time, shift, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
+}
+
 /// The step from the present state to a time; nothing is kept.
 Trial try_step(Stage& stage, double time, const Forces& start_forces, bool damped) {
   Run& run = stage.run;
@@ -52,6 +64,7 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
                             damped ? &stage.C : nullptr,
                             {},
                             &stage.supports.slides}};
+  if (settings.integrator != Integrator::implicit_euler) follow(stage.supports, time, trial.increment.motion);
   trial.increment.offset = carried(trial.increment.motion, start_forces);
   run.equations.begin_step(h);
   if (run.equations.has_history()) run.newton.forget();
@@ -146,6 +159,7 @@ void run_implicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+    if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
     run.set_reactions(run.newton.forces().residual(), supports);
