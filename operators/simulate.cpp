@@ -22,6 +22,7 @@ using simulation::StateFields;
 
 /// Increments of a step: time steps, or the parts that the loads of a static step come in.
 int increments(const fe::Model& model, const fe::Step& step) {
+  if (model.settings.arc_length.on) return model.settings.arc_length.steps;
   return model.settings.integrator == fe::Integrator::static_ ? model.settings.load_steps : step.count;
 }
 
@@ -56,6 +57,7 @@ void finish(const Simulation& simulation, const fe::Outcome& outcome, const std:
   const std::string settings = simulation::settings_json(simulation);
   const std::string check = simulation::check_json(simulation, outcome, worst, warnings);
   reporter.print(simulation::check_text(simulation, outcome, worst));
+  for (const std::string& note : outcome.notes) reporter.note(note);
   for (const std::string& warning : warnings) reporter.warn(warning);
   reporter.record("settings", settings);
   reporter.record("check", check);

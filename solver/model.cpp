@@ -190,6 +190,12 @@ void check_shapes(const Model& model) {
 void check_integrator(const Settings& s) {
   check_positive("beta", s.newmark_beta, false);
   check_positive("gamma", s.newmark_gamma, true);
+  if (!(s.step_tolerance > 0 && s.step_tolerance < 1))
+    throw Error(fmt::format("stepTolerance = {} is not in (0, 1)", s.step_tolerance));
+  if (s.arc_length.on && s.integrator != Integrator::static_)
+    throw Error(fmt::format("arcLength follows static equilibria, but timeIntegration is {}: choose static",
+                            name(s.integrator)));
+  check_positive("arcSteps", s.arc_length.steps, false);
   if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
     throw Error(fmt::format("spectralRadius = {} is not in [0, 1]", s.spectral_radius));
   if (s.integrator != Integrator::newmark || s.allow_unstable) return;
@@ -311,10 +317,7 @@ void Model::check() const {
   check_initial(*this, "displacement", initial_displacement);
   check_initial(*this, "velocity", initial_velocity);
   if (steps.empty()) throw Error("the simulation has no step");
-  for (const Step& step : steps) {
-    check_step(*this, step);
-    if (!is_dynamic(settings.integrator)) check_held(*this, step);
-  }
+  for (const Step& step : steps) check_step(*this, step);
 }
 
 }  // namespace msml::fe

@@ -173,6 +173,16 @@ enum class Definiteness { automatic, always, never };
 enum class LinearSolver { direct, cg, automatic };
 enum class Preconditioner { none, jacobi, block_jacobi, incomplete_cholesky, automatic };
 
+/// Follows equilibria through limit points of the load: the factor on the loads is an unknown, and the length of the
+/// displacement's increment is given. The first is that of 1/load_steps of the loads; it adapts. Stops at the first
+/// state at or past one of the bounds.
+struct ArcLength {
+  bool on = false;
+  int steps = 50;                                                 ///< reported states, > 0
+  double load = std::numeric_limits<double>::infinity();          ///< largest |load factor|
+  double displacement = std::numeric_limits<double>::infinity();  ///< largest displacement of a node
+};
+
 struct Settings {
   Integrator integrator = Integrator::implicit_euler;
   LinearSolver linear_solver = LinearSolver::automatic;
@@ -190,6 +200,9 @@ struct Settings {
   double newmark_beta = 0.25, newmark_gamma = 0.5;
   double spectral_radius = 0.8;  ///< of generalized_alpha at infinite frequency, in [0, 1]
   bool allow_unstable = false;   ///< run explicit methods beyond their stable time step
+  bool adaptive_step = false;    ///< steps between the reported states are as long as Newton and the error allow
+  double step_tolerance = 1e-3;  ///< of implicit dynamics with adaptive_step: error of a step beside the displacement
+  ArcLength arc_length = {};     ///< of static_
   bool allow_inverted = false;   ///< go on where an element of a finite-strain law inverts (det F <= 0)
   int threads = 1;
 };
@@ -224,6 +237,7 @@ struct State {
   Points displacement, velocity, acceleration;
   Points reaction;  ///< force of the constraint on the body; zero where free
   Energies energies;
+  double load_factor = 1;  ///< statics: the share of this step's loads that acts
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.

@@ -158,7 +158,8 @@ LinearStatus Newton::factor(const Increment& increment) {
 
 LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
   const double tolerance = model_.settings.linear_tolerance;
-  if (rigid_free_ && !followers_) return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
+  if (rigid_free_ && !followers_ && !(increment.slides && !increment.slides->empty()))
+    return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
   if (!followers_) return linear_->solve(right, tolerance, step);
   Vector extra;
   const LinearMap whole = [&](const Vector& x, Vector& y) {

@@ -51,6 +51,8 @@ class Newton {
   void free_rigid_motions(bool free) { rigid_free_ = free; }
   /// Forces at u alone.
   void look(const Vector& u, const ScaledLoads& loads);
+  /// Forces of the start of a step that is to be tried again; the next increment starts from forces of its own.
+  void go_back(const Forces& start) { forces_ = start, tangent_current_ = false; }
   void forget() { tangent_current_ = false; }
   /// The semidefinite stiffness of elements and springs at u.
   void stiffness(const Vector& u, const ScaledLoads& loads, BlockMatrix& K);
@@ -68,6 +70,9 @@ class Newton {
   Vector residual(const Increment& increment) const;
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
   const BlockMatrix& tangent() const { return tangent_; }
+  const BlockMatrix* followers() const { return followers_.get(); }  ///< null without follower pressure
+  /// Adds to the counts of iterations and linear solves.
+  void count(int iterations, int solves) { iterations_ += iterations, solves_ += solves; }
   LinearSystem& linear() { return *linear_; }
   /// Copies counts and times.
   void report(Outcome& outcome) const;

@@ -16,7 +16,7 @@ namespace {
 void integrate(Run& run) {
   switch (run.model.settings.integrator) {
     case Integrator::static_:
-      return run_static(run);
+      return run.model.settings.arc_length.on ? run_arc_length(run) : run_static(run);
     case Integrator::quasi_static:
       return run_quasi_static(run);
     case Integrator::forward_euler:

@@ -51,7 +51,7 @@ std::string escaped(const std::string& text) {
 SeriesWriter::SeriesWriter(const Simulation& simulation, const OutputRequest& request, std::filesystem::path folder)
     : request_(request), folder_(std::move(folder)), stride_(request.every), frame_(frame_of(simulation)) {
   const fe::Settings& settings = simulation.model.settings;
-  if (settings.integrator == fe::Integrator::static_) stride_ *= settings.load_steps;
+  if (settings.integrator == fe::Integrator::static_ && !settings.arc_length.on) stride_ *= settings.load_steps;
 }
 
 bool SeriesWriter::wants(const fe::State& state) const { return state.increment % stride_ == 0; }

@@ -14,8 +14,9 @@ struct Keys {
   Key<std::string> integration, linear, preconditioner, unit, mass;
   Key<double> damping_mass, damping_stiffness, tolerance, linear_tolerance;
   Key<Integer> newton, load_steps, threads, old_threads;
-  Key<bool> line_search, allow_unstable;
-  Key<double> beta, gamma, spectral_radius;
+  Key<bool> line_search, allow_unstable, adaptive, arc_length, allow_inverted;
+  Key<Integer> arc_steps;
+  Key<double> beta, gamma, spectral_radius, step_tolerance, largest_load, largest_displacement;
   Key<std::string> definiteness;
 };
 
@@ -106,6 +107,28 @@ void describe_method_numbers(Factory<SettingsBuilder>& tag, Keys& keys) {
       "allowUnstable", {.fallback = false, .doc = "run methods beyond their stable time step, to study them"});
 }
 
+void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
+  const fe::Settings usual;
+  keys.adaptive = tag.parameter<bool>(
+      "adaptiveStep",
+      {.fallback = false, .doc = "shorter and longer steps between the reported states, by iterations and error"});
+  keys.step_tolerance = tag.parameter(
+      "stepTolerance", {.range = open(0, 1),
+                        .fallback = usual.step_tolerance,
+                        .doc = "with adaptiveStep in implicit dynamics: error of a step beside the displacement"});
+  keys.arc_length = tag.parameter<bool>(
+      "arcLength", {.fallback = false, .doc = "static: follow equilibria past limit points of the load"});
+  keys.arc_steps = tag.parameter<Integer>(
+      "arcSteps", {.range = closed(1, 1000000), .fallback = usual.arc_length.steps, .doc = "of arcLength: states"});
+  keys.largest_load =
+      tag.parameter("largestLoadFactor", {.range = positive(), .optional = true, .doc = "of arcLength: where it ends"});
+  keys.largest_displacement = tag.parameter(
+      "largestDisplacement",
+      {.unit = "length", .range = positive(), .optional = true, .doc = "of arcLength: of a node, where it ends"});
+  keys.allow_inverted =
+      tag.parameter<bool>("allowInverted", {.fallback = false, .doc = "go on where elements turn inside out"});
+}
+
 void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
   const fe::Settings usual;
   keys.newton = tag.parameter<Integer>(
@@ -166,6 +189,13 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
   settings.newmark_gamma = record[keys.gamma];
   settings.spectral_radius = record[keys.spectral_radius];
   settings.allow_unstable = record[keys.allow_unstable];
+  settings.allow_inverted = record[keys.allow_inverted];
+  settings.adaptive_step = record[keys.adaptive];
+  settings.step_tolerance = record[keys.step_tolerance];
+  settings.arc_length.on = record[keys.arc_length];
+  settings.arc_length.steps = static_cast<int>(record[keys.arc_steps]);
+  if (record.has(keys.largest_load)) settings.arc_length.load = record[keys.largest_load];
+  if (record.has(keys.largest_displacement)) settings.arc_length.displacement = record[keys.largest_displacement];
   settings.load_steps = static_cast<int>(record[keys.load_steps]);
   settings.threads = record.has(keys.threads)       ? static_cast<int>(record[keys.threads])
                      : record.has(keys.old_threads) ? static_cast<int>(record[keys.old_threads])
@@ -180,6 +210,7 @@ Factory<SettingsBuilder> solver() {
   Keys keys;
   describe_method(tag, keys);
   describe_method_numbers(tag, keys);
+  describe_steps(tag, keys);
   describe_control(tag, keys);
   tag.build([=](const Record& record) -> SettingsBuilder {
     return [=, &record](Reporter& reporter, int threads) { return read(record, keys, reporter, threads); };

@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <numeric>
 
@@ -101,14 +102,9 @@ std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_o
   return parts;
 }
 
-}  // namespace
-
-void check_held(const Model& model, const Step& step) {
-  // Springs hold parts against each other in ways that only the matrix can tell.
-  if (!step.springs.empty()) return;
+/// Adds the supports of a step.
+void hold(const Model& model, const Step& step, const std::vector<int>& part_of, std::vector<Part>& parts) {
   const Mesh& mesh = *model.mesh;
-  const std::vector<int> part_of = connected_parts(model);
-  std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
   for (const Prescribed& condition : step.prescribed)
     for (const int node : condition.nodes) {
       const int id = part_of[static_cast<std::size_t>(node)];
@@ -123,6 +119,82 @@ void check_held(const Model& model, const Step& step) {
         Part& part = parts[static_cast<std::size_t>(id)];
         part.held += seen(arm_of(mesh, node, part), slide.normal.normalized());
       }
+}
+
+}  // namespace
+
+FreeMotions free_motions(const Model& model, const Step& step, const Numbering& numbering, const Mask& fixed) {
+  if (!step.springs.empty()) return {};  // as in check_held
+  const Mesh& mesh = *model.mesh;
+  const std::vector<int> part_of = connected_parts(model);
+  std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
+  hold(model, step, part_of, parts);
+  FreeMotions free;
+  for (std::size_t id = 0; id < parts.size(); ++id) {
+    const Part& part = parts[id];
+    if (part.points == 0 || rank(part.all) == rank(part.held)) continue;
+    const Eigen::SelfAdjointEigenSolver<Gram> solver(part.held);
+    const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
+    const std::size_t before = free.modes.size();
+    for (int k = 0; k < 6; ++k) {
+      if (solver.eigenvalues()[k] >= 1e-12 * largest) continue;
+      const Vec3 shift = solver.eigenvectors().col(k).head<3>(), turn = solver.eigenvectors().col(k).tail<3>();
+      Vector mode = Vector::Zero(3 * numbering.nodes());
+      for (int n = 0; n < numbering.nodes(); ++n) {
+        const int point = numbering.node_of[static_cast<std::size_t>(n)];
+        if (part_of[static_cast<std::size_t>(point)] != static_cast<int>(id)) continue;
+        const Vec3 arm = arm_of(mesh, point, part);
+        mode.segment<3>(3 * n) = shift + turn.cross(arm);
+      }
+      for (Eigen::Index i = 0; i < mode.size(); ++i)
+        if (fixed[static_cast<std::size_t>(i)]) mode[i] = 0;
+      const double whole = std::sqrt(static_cast<double>(part.points));
+      for (const Vector& other : free.modes) mode -= mode.dot(other) * other;
+      if (mode.norm() > 1e-8 * whole) free.modes.push_back(mode.normalized());
+    }
+    if (free.modes.size() - before < 6) continue;
+    free.parts.emplace_back();
+    for (int n = 0; n < numbering.nodes(); ++n)
+      if (part_of[static_cast<std::size_t>(numbering.node_of[static_cast<std::size_t>(n)])] == static_cast<int>(id))
+        free.parts.back().push_back(n);
+  }
+  return free;
+}
+
+void remove_free_motions(const FreeMotions& free, bool small_strain, double loads, const Vector& X, Vector& u) {
+  if (small_strain) {
+    for (const Vector& mode : free.modes) u -= mode.dot(u) * mode;
+    return;
+  }
+  for (const std::vector<int>& nodes : free.parts) {
+    Vec3 from = Vec3::Zero(), to = Vec3::Zero();
+    for (const int n : nodes) {
+      to += X.segment<3>(3 * n) / static_cast<double>(nodes.size());
+      from += (X.segment<3>(3 * n) + u.segment<3>(3 * n)) / static_cast<double>(nodes.size());
+    }
+    Mat3 R = Mat3::Identity();
+    if (loads == 0) {
+      Mat3 H = Mat3::Zero();
+      for (const int n : nodes)
+        H += (X.segment<3>(3 * n) + u.segment<3>(3 * n) - from) * (X.segment<3>(3 * n) - to).transpose();
+      const Eigen::JacobiSVD<Mat3> svd(H, Eigen::ComputeFullU | Eigen::ComputeFullV);
+      Vec3 signs(1, 1, (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1);
+      R = svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose();
+    }
+    for (const int n : nodes) {
+      const Vec3 x = R * (X.segment<3>(3 * n) + u.segment<3>(3 * n) - from) + to;
+      u.segment<3>(3 * n) = x - X.segment<3>(3 * n);
+    }
+  }
+}
+
+void check_held(const Model& model, const Step& step) {
+  // Springs hold parts against each other in ways that only the matrix can tell.
+  if (!step.springs.empty()) return;
+  const Mesh& mesh = *model.mesh;
+  const std::vector<int> part_of = connected_parts(model);
+  std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
+  hold(model, step, part_of, parts);
   for (const Part& part : parts) {
     if (part.points == 0) continue;
     const long motions = rank(part.all) - rank(part.absent), free = rank(part.all) - rank(part.held);

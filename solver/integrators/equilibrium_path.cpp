@@ -11,6 +11,7 @@ IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, do
   Increment increment{
       run.now.u, path.supports.fixed,  path.supports.at(share, path.time(share)), path.loads(share), {}, nullptr,
       {},        &path.supports.slides};
+  run.check_balanced(increment.loads);
   run.equations.begin_step((share - from) * path.duration);
   if (run.equations.has_history()) run.newton.forget();
   return run.newton.run(increment);
@@ -19,26 +20,43 @@ IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, do
 void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) {
   const Vector before = run.now.u;
   run.now.u = u;
-  run.newton.prepare(u, path.loads(share));
+  run.now.load_factor = share;
+  if (!run.free.modes.empty()) {
+    Forces forces;
+    run.equations.evaluate_loads(u, path.loads(share), forces, nullptr);
+    remove_free_motions(run.free, run.equations.small_strain(), forces.external.norm(), run.equations.positions(),
+                        run.now.u);
+  }
+  run.newton.prepare(run.now.u, path.loads(share));
   run.newton.rest();
   run.set_reactions(run.newton.forces().residual(), path.supports);
   run.account(before);
-  run.equations.end_step(u);
+  run.equations.end_step(run.now.u);
+}
+
+/// Few iterations: longer pieces; many: shorter ones.
+double growth(const IncrementResult& result, bool adaptive) {
+  const std::size_t iterations = result.residuals.size() - 1;
+  if (!adaptive || iterations <= 4) return 2;
+  return iterations <= 8 ? 1 : 0.6;
 }
 
 }  // namespace
 
 bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   const Motion before = run.now;
-  const double smallest = (to - from) / 64;
+  const bool adaptive = run.model.settings.adaptive_step;
+  const double smallest = (to - from) / (adaptive ? 4096 : 64);
   double piece = to - from;
+  if (adaptive && run.piece > 0) piece = std::clamp(run.piece / path.duration, smallest, piece);
   while (from < to) {
     const double share = std::min(to, from + piece) > to - 1e-12 ? to : from + piece;
     const IncrementResult result = try_piece(run, path, from, share);
     if (result.stop == Stop::converged) {
       take(run, path, share, result.u);
       from = share;
-      piece = std::min(piece * 2, to - from);
+      piece *= growth(result, adaptive);
+      if (adaptive) run.piece = piece * path.duration;
       continue;
     }
     run.newton.forget();
@@ -48,7 +66,7 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
       explain(run, result, share);
       return false;
     }
-    piece /= 2;
+    piece = (share - from) / 2;
   }
   run.now.time = path.time(to);
   ++run.now.increment;

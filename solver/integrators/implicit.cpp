@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Implicit time steps: the loop that backward Euler, Newmark's and the generalised-alpha method share.
+#include <algorithm>
+#include <cmath>
+
 #include "solver/integrators/stepper.hpp"
 
 namespace msml::fe {
 namespace {
 
+bool blends(const Kinematics& motion) { return motion.force_share != 1 || motion.inertia_share != 1; }
+
 /// What the start of the step leaves for its end to balance; empty where only the end counts.
 Vector carried(const Kinematics& motion, const Forces& start) {
-  if (motion.force_share == 1 && motion.inertia_share == 1) return {};
+  if (!blends(motion)) return {};
   return (1 - motion.inertia_share) * start.inertia -
          (1 - motion.force_share) * (start.external - start.internal - start.damping);
 }
@@ -18,38 +23,116 @@ Forces mixed(const Kinematics& motion, const Forces& start, const Forces& end) {
           m * end.inertia + (1 - m) * start.inertia, f * end.damping + (1 - f) * start.damping, end.found};
 }
 
-/// One time step; false if it failed, and the outcome is explained.
-bool advance(Run& run, Increment& increment, const Supports& supports, double time, BlockMatrix& C) {
-  Newton& newton = run.newton;
-  const Kinematics& motion = increment.motion;
-  const bool blends = motion.force_share != 1 || motion.inertia_share != 1;
-  const Forces start = blends ? newton.forces() : Forces{};
-  increment.offset = carried(motion, start);
-  run.equations.begin_step(motion.dt);
-  if (run.equations.has_history()) newton.forget();
-  if (newton.damping(run.now.u, increment.loads, C)) increment.damping_matrix = &C;
-  const IncrementResult result = newton.walk(increment);
-  if (result.stop != Stop::converged) return explain(run, result, -1), false;
-  const Vector velocity = motion.velocity_at(result.u), acceleration = motion.acceleration_at(result.u);
-  newton.prepare(result.u, increment.loads);
-  newton.move(velocity, acceleration, increment.damping_matrix);
-  if (run.model.settings.newton_iterations == 1) {
-    IncrementResult checked = result;
-    checked.worst_element = newton.forces().found.smallest_J_element;
-    checked.worst_J = newton.forces().found.smallest_J;
-    checked.stop = newton.state_verdict();
-    if (checked.stop != Stop::converged) return explain(run, checked, -1), false;
+/// Everything that the time steps within one stage share.
+struct Stage {
+  Run& run;
+  const Step& step;
+  const Supports& supports;
+  double start;
+  BlockMatrix& C;   ///< damping beside alpha M, at the start of the time step
+  double size = 0;  ///< largest displacement so far, root of the sum of squares
+};
+
+struct Trial {
+  Increment increment;
+  IncrementResult result;
+  Vector velocity, acceleration;
+};
+
+/// The step from the present state to a time; nothing is kept.
+Trial try_step(Stage& stage, double time, const Forces& start_forces, bool damped) {
+  Run& run = stage.run;
+  const Settings& settings = run.model.settings;
+  const double h = time - run.now.time, share = (time - stage.start) / (stage.step.dt * stage.step.count);
+  Trial trial{.increment = {run.now.u,
+                            stage.supports.fixed,
+                            stage.supports.at(share, time),
+                            {{&run.equations.loads(run.now.step), 1.0, time}},
+                            kinematics(settings, run.now, stage.supports.fixed, h),
+                            damped ? &stage.C : nullptr,
+                            {},
+                            &stage.supports.slides}};
+  trial.increment.offset = carried(trial.increment.motion, start_forces);
+  run.equations.begin_step(h);
+  if (run.equations.has_history()) run.newton.forget();
+  trial.result = run.newton.walk(trial.increment);
+  if (trial.result.stop != Stop::converged) return trial;
+  trial.velocity = trial.increment.motion.velocity_at(trial.result.u);
+  trial.acceleration = trial.increment.motion.acceleration_at(trial.result.u);
+  run.newton.prepare(trial.result.u, trial.increment.loads);
+  run.newton.move(trial.velocity, trial.acceleration, trial.increment.damping_matrix);
+  if (settings.newton_iterations == 1) {
+    trial.result.worst_element = run.newton.forces().found.smallest_J_element;
+    trial.result.worst_J = run.newton.forces().found.smallest_J;
+    trial.result.stop = run.newton.state_verdict();
   }
+  return trial;
+}
+
+void keep(Stage& stage, const Trial& trial, double time, const Forces& start_forces) {
+  Run& run = stage.run;
   const Vector before = run.now.u;
-  run.now.u = result.u;
-  run.now.v = velocity;
-  run.now.a = acceleration;
+  run.now.u = trial.result.u;
+  run.now.v = trial.velocity;
+  run.now.a = trial.acceleration;
   run.now.time = time;
-  ++run.now.increment;
-  run.set_reactions(newton.residual(increment), supports);
-  if (blends) run.between = mixed(motion, start, newton.forces());
+  run.set_reactions(run.newton.residual(trial.increment), stage.supports);
+  if (blends(trial.increment.motion)) run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
   run.account(before);
-  run.equations.end_step(result.u);
+  run.equations.end_step(run.now.u);
+  stage.size = std::max(stage.size, run.now.u.norm());
+}
+
+/// Local error of a step of h beside what may be, 1 at the limit: the term of the displacement's expansion that the
+/// method misses, h^2 (beta - 1/6)(a1 - a0) for Newmark's family (Zienkiewicz and Xie 1991, doi
+/// 10.1002/eqe.4290200902) and h^2/2 a1 for backward Euler, beside the displacement so far, or where there is none
+/// yet, what the motion makes of a whole time step of the scene.
+double error_of(const Stage& stage, const Trial& trial, double h) {
+  const Settings& settings = stage.run.model.settings;
+  const Motion& now = stage.run.now;
+  const bool euler = settings.integrator == Integrator::implicit_euler;
+  const double beta = 1 / (trial.increment.motion.acceleration_factor * h * h);
+  Vector missed = euler ? Vector(0.5 * h * h * trial.acceleration)
+                        : Vector(h * h * (beta - 1.0 / 6) * (trial.acceleration - now.a));
+  const double dt = stage.step.dt;
+  const double size = std::max({stage.size, trial.result.u.norm(), dt * now.v.norm(),
+                                0.5 * dt * dt * free_norm(trial.acceleration, stage.supports.fixed)});
+  return size > 0 ? free_norm(missed, stage.supports.fixed) / (settings.step_tolerance * size) : 0;
+}
+
+/// To the next reported state; false if that failed, and the outcome is explained.
+bool advance(Stage& stage, double target) {
+  Run& run = stage.run;
+  const Settings& settings = run.model.settings;
+  const double dt = stage.step.dt, smallest = dt / 4096;
+  double h = settings.adaptive_step && run.piece > 0 ? std::clamp(run.piece, smallest, dt) : dt;
+  while (run.now.time < target) {
+    const bool last = run.now.time + 1.0001 * h >= target;
+    const double time = last ? target : run.now.time + h, taken = time - run.now.time;
+    const Forces start_forces =
+        blends(kinematics(settings, run.now, stage.supports.fixed, taken)) ? run.newton.forces() : Forces{};
+    const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, time}};
+    const bool damped = run.newton.damping(run.now.u, loads, stage.C);
+    Trial trial = try_step(stage, time, start_forces, damped);
+    const bool solved = trial.result.stop == Stop::converged;
+    const double order = settings.integrator == Integrator::implicit_euler ? 2 : 3;
+    const double error = solved && settings.adaptive_step ? error_of(stage, trial, taken) : 0;
+    const double factor = solved ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1 / order), 0.2, 2.0) : 0.5;
+    const bool hopeless = trial.result.stop == Stop::singular || trial.result.stop == Stop::out_of_memory;
+    if (!solved && (!settings.adaptive_step || hopeless || taken / 2 < smallest))
+      return explain(run, trial.result, -1), false;
+    if (!solved || (error > 1 && taken * factor >= smallest)) {
+      h = taken * factor;
+      run.newton.go_back(start_forces);
+      continue;
+    }
+    keep(stage, trial, time, start_forces);
+    const double grown = taken * (trial.result.residuals.size() > 8 ? std::min(factor, 0.7) : factor);
+    h = last ? std::max(h, std::min(grown, dt)) : grown;
+    if (last && grown < taken) h = grown;
+    run.piece = h;
+  }
+  ++run.now.increment;
   return true;
 }
 
@@ -61,27 +144,16 @@ void run_implicit(Run& run) {
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);
-    ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
+    const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
     run.set_reactions(run.newton.forces().residual(), supports);
     run.mark();
     if (s == 0 && !run.accept()) return;
-    const double start = run.now.time;
-    for (int k = 1; k <= step.count; ++k) {
-      const double time = start + k * step.dt;
-      loads.front().time = time;
-      Increment increment{run.now.u,
-                          supports.fixed,
-                          supports.at(static_cast<double>(k) / step.count, time),
-                          loads,
-                          kinematics(model.settings, run.now, supports.fixed, step.dt),
-                          nullptr,
-                          {},
-                          &supports.slides};
-      if (!advance(run, increment, supports, time, C) || !run.accept()) return;
-    }
+    Stage stage{run, step, supports, run.now.time, C, run.now.u.norm()};
+    for (int k = 1; k <= step.count; ++k)
+      if (!advance(stage, stage.start + k * step.dt) || !run.accept()) return;
   }
 }
 

@@ -6,6 +6,7 @@ namespace msml::fe {
 
 void run_quasi_static(Run& run) {
   const Model& model = run.model;
+  run.refuse_pushed_bodies();
   run.newton.prepare(run.now.u, {});
   run.newton.rest();
   run.mark();
@@ -16,6 +17,7 @@ void run_quasi_static(Run& run) {
     const LoadSet* set = &run.equations.loads(run.now.step);
     EquilibriumPath path{
         {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
+    run.hold(step, path.supports.fixed);
     path.loads = [&](double share) { return ScaledLoads{{set, 1.0, path.time(share)}}; };
     for (int k = 1; k <= step.count; ++k)
       if (!advance(run, path, (k - 1.0) / step.count, static_cast<double>(k) / step.count) || !run.accept()) return;

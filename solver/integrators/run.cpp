@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
+#include "msml/core/error.hpp"
 #include "solver/integrators/stepper.hpp"
 
 namespace msml::fe {
@@ -17,7 +19,42 @@ State Run::state() const {
           to_points(numbering, now.v),
           to_points(numbering, now.a),
           to_points(numbering, now.reaction),
-          now.energies};
+          now.energies,
+          now.load_factor};
+}
+
+void Run::hold(const Step& step, const Mask& fixed) {
+  free = free_motions(model, step, equations.numbering(), fixed);
+  newton.free_rigid_motions(!free.modes.empty());
+  if (!free.modes.empty())
+    outcome.notes.push_back(fmt::format(
+        "step '{}': {} rigid motions are free; its loads balance, and the state is one of many that differ by them",
+        step.name, free.modes.size()));
+}
+
+void Run::refuse_pushed_bodies() {
+  for (std::size_t s = 0; s < model.steps.size(); ++s) {
+    const Step& step = model.steps[s];
+    now.step = static_cast<int>(s);
+    const Mask fixed = make_supports(step, equations.numbering(), now.u).fixed;
+    free = free_motions(model, step, equations.numbering(), fixed);
+    check_balanced({{&equations.loads(now.step), 1.0, now.time}});
+  }
+  free = {};
+  now.step = 0;
+}
+
+void Run::check_balanced(const ScaledLoads& loads) const {
+  if (free.modes.empty()) return;
+  Forces forces;
+  equations.evaluate_loads(Vector::Zero(equations.size()), loads, forces, nullptr);
+  const double size = forces.external.norm();
+  for (const Vector& mode : free.modes)
+    if (std::abs(dot(mode, forces.external)) > 1e-8 * size) {
+      check_held(model, model.steps[static_cast<std::size_t>(now.step)]);
+      throw Error(fmt::format("the loads of step '{}' push the body along a motion that nothing holds",
+                              model.steps[static_cast<std::size_t>(now.step)].name));
+    }
 }
 
 bool Run::accept() {

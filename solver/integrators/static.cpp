@@ -7,6 +7,7 @@ namespace msml::fe {
 void run_static(Run& run) {
   const Model& model = run.model;
   const int parts = model.settings.load_steps;
+  run.refuse_pushed_bodies();
   run.newton.prepare(run.now.u, {});
   run.newton.rest();
   run.mark();
@@ -18,6 +19,7 @@ void run_static(Run& run) {
     const LoadSet* before = s > 0 ? &run.equations.loads(run.now.step - 1) : nullptr;
     EquilibriumPath path{
         {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
+    run.hold(step, path.supports.fixed);
     path.loads = [&](double share) {
       ScaledLoads loads{{goal, share, path.time(share)}};
       if (before && share < 1) loads.push_back({before, 1 - share, path.start, true});

@@ -3,6 +3,7 @@
 #pragma once
 #include <optional>
 
+#include "solver/conditions/rigid.hpp"
 #include "solver/newton.hpp"
 
 namespace msml::fe {
@@ -14,6 +15,7 @@ struct Motion {
   double time = 0;
   int step = 0, increment = 0;
   Energies energies = {};
+  double load_factor = 1;
 };
 
 /// Everything that an integrator works with.
@@ -26,8 +28,16 @@ struct Run {
   Motion now;
   std::vector<double> residuals = {};            ///< of the increment that failed
   Vector pull_before = {}, damping_before = {};  ///< external and support forces, damping forces at the last mark
+  double piece = 0;                              ///< adaptive_step: length of the next piece, in time; 0: not known yet
+  FreeMotions free = {};                         ///< rigid motions that the supports of the present step leave
   std::optional<Forces> between = {};            ///< balanced forces, where these are not those at the present time
 
+  /// Takes up what the supports of a static step leave free, if anything.
+  void hold(const Step& step, const Mask& fixed);
+  /// Throws Error where a static step pushes what it does not hold, before anything runs.
+  void refuse_pushed_bodies();
+  /// Throws Error unless these loads leave the free rigid motions alone.
+  void check_balanced(const ScaledLoads& loads) const;
   State state() const;
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
@@ -51,12 +61,15 @@ struct EquilibriumPath {
   double time(double share) const { return start + share * duration; }
 };
 
-/// Goes along a path from one share to another, in halved pieces where Newton's method fails; at most 2^6 pieces.
+/// Goes along a path from one share to another, in halved pieces where Newton's method fails; at most 2^6 pieces, 2^12
+/// with adaptive_step, where the length of the next piece also follows the number of iterations.
 /// False if that fails: the outcome is explained then, and the present state is the one before.
 bool advance(Run& run, const EquilibriumPath& path, double from, double to);
 
 /// Load steps to equilibrium; see static.cpp.
 void run_static(Run& run);
+/// Static equilibria along an arc of loads and displacements; see arc_length.cpp.
+void run_arc_length(Run& run);
 /// Equilibrium at each time step; see quasi_static.cpp.
 void run_quasi_static(Run& run);
 /// Time steps with equations to solve; see implicit.cpp.

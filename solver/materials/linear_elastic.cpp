@@ -68,7 +68,8 @@ class TraceConstraint final : public Law {
   double poisson_ratio() const override { return 0; }
   double shear_modulus() const override { return 0; }
   bool exact_tangent() const override { return data_.strain == Strain::small || wants_exact(data_, Want::tangent); }
-  bool survives_inversion() const override { return true; }
+  /// The polar rotation jumps where a stretch changes sign.
+  bool survives_inversion() const override { return data_.strain == Strain::small; }
   bool small_strain() const override { return data_.strain == Strain::small; }
 
  private:

@@ -152,5 +152,25 @@ TEST(Static, TurnsABeamsEndByNinetyDegrees) {
   EXPECT_GT(outcome.check.smallest_J, 0.5);
 }
 
+// A hanging or standing column with nu = 0: the displacement of the end is rho g L^2/(2E), and quadratic along it.
+TEST(Static, AColumnUnderItsOwnWeightIsShortenedByTheClosedForm) {
+  const double E = 1e4, L = 4, rho = 2, g = 9.81;
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+    Model model = make_model(box_mesh(1, 1, 8, {1, 1, L}, kind),
+                             {.youngs_modulus = E, .poisson_ratio = 0, .strain = Strain::small}, rho);
+    model.steps[0].gravity = Vec3(0, 0, -g);
+    model.steps[0].prescribed = {
+        fix(points_where(*model.mesh, [](const Vec3& x) { return x[2] < 1e-9; }), true, true, true)};
+    const Outcome outcome = solve(model, {});
+    double mean = 0;
+    const std::vector<int> top = points_where(*model.mesh, [=](const Vec3& x) { return x[2] > L - 1e-9; });
+    for (const int n : top) mean += outcome.state.displacement(n, 2) / static_cast<double>(top.size());
+    // The loads of linear elements are lumped to nodes unevenly: their mean is off by the square of the element size.
+    const double exact = -rho * g * L * L / (2 * E);
+    EXPECT_NEAR(mean, exact, (kind == CellKind::tet4 ? 0.02 : 1e-3) * std::abs(exact));
+    EXPECT_NEAR(outcome.check.sum_reactions[2], rho * g * L, 1e-9 * rho * g * L);
+  }
+}
+
 }  // namespace
 }  // namespace msml::fe

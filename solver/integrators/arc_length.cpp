@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibria past limit points: the load factor is an unknown, the length of the displacement increment is given.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "msml/core/error.hpp"
+#include "solver/integrators/stepper.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int good_iterations = 5, most_cuts = 12;
+
+/// Crisfield's method (1981, doi 10.1016/0045-7949(81)90108-5) in its cylindrical form: |du| = length over each step,
+/// load factor free. The linear systems are indefinite past a limit point.
+struct Arc {
+  Run& run;
+  const EquilibriumPath& path;
+  std::unique_ptr<LinearSystem> linear;
+  BlockMatrix matrix;
+  Vector last = {};  ///< displacement increment of the step before; empty at first
+  double length = 0;
+
+  ScaledLoads unit_loads() const { return path.loads(1); }
+
+  /// Load per factor at u.
+  Vector reference(const Vector& u) const {
+    Forces all, none;
+    run.equations.evaluate_loads(u, path.loads(1), all, nullptr);
+    run.equations.evaluate_loads(u, path.loads(0), none, nullptr);
+    Vector f = all.external - none.external;
+    clear(f);
+    return f;
+  }
+
+  void clear(Vector& v) const {
+    for (std::size_t k = 0; k < path.supports.fixed.size(); ++k)
+      if (path.supports.fixed[k]) v[static_cast<Eigen::Index>(k)] = 0;
+  }
+
+  LinearStatus factor() {
+    matrix.values = run.newton.tangent().values;
+    if (run.newton.followers()) add(matrix, 1, *run.newton.followers());
+    return linear->factor(matrix, path.supports.fixed);
+  }
+
+  /// du_t = K^-1 f, and du_r = K^-1 r.
+  bool directions(const Vector& u, const Vector& residual, Vector& by_load, Vector& by_residual) {
+    if (factor() != LinearStatus::done) return false;
+    const double tolerance = run.model.settings.linear_tolerance;
+    run.newton.count(1, 2);
+    const bool loaded = linear->solve(reference(u), tolerance, by_load) == LinearStatus::done;
+    if (residual.size() == 0) return loaded;
+    return loaded && linear->solve(residual, tolerance, by_residual) == LinearStatus::done;
+  }
+
+  /// The change of the load factor that keeps |way + r + x t| = length, in the direction of the way; NaN if none does.
+  double keep_length(const Vector& way, const Vector& t, const Vector& r) const {
+    const Vector base = way + r;
+    const double a = dot(t, t), b = dot(t, base), c = dot(base, base) - length * length, square = b * b - a * c;
+    if (!(square >= 0) || !(a > 0)) return std::nan("");
+    const double root = std::sqrt(square), one = (-b + root) / a, two = (-b - root) / a, along = dot(way, t);
+    return one * along >= two * along ? one : two;
+  }
+
+  /// One step from the present state; the result's u is the new displacement, `factor_out` its load factor.
+  IncrementResult step(double& factor_out) {
+    IncrementResult result;
+    result.u = run.now.u;
+    double lambda = run.now.load_factor;
+    run.newton.prepare(result.u, path.loads(lambda));
+    Vector t, r;
+    if (!directions(result.u, {}, t, r)) return result.stop = Stop::singular, result;
+    if (length == 0) length = std::sqrt(dot(t, t)) / run.model.settings.load_steps;
+    const double size = std::sqrt(dot(t, t));
+    const double sign = last.size() > 0 && dot(last, t) < 0 ? -1 : 1;
+    if (!(size > 0)) return result.stop = Stop::singular, result;
+    lambda += sign * length / size;
+    Vector way = sign * length / size * t;
+    for (int iteration = 0; iteration < run.model.settings.newton_iterations; ++iteration) {
+      result.u = run.now.u + way;
+      run.newton.prepare(result.u, path.loads(lambda));
+      run.newton.rest();
+      const Forces& forces = run.newton.forces();
+      Vector residual = forces.residual();
+      clear(residual);
+      const double norm = residual.norm();
+      result.residuals.push_back(norm);
+      result.scale = std::max(forces.external.norm(), forces.internal.norm());
+      result.worst_element = forces.found.smallest_J_element;
+      result.worst_J = forces.found.smallest_J;
+      result.stop = run.newton.state_verdict();
+      if (result.stop != Stop::converged || !std::isfinite(norm)) return result;
+      if (norm <= run.model.settings.tolerance * result.scale) return factor_out = lambda, result;
+      if (!directions(result.u, residual, t, r)) return result.stop = Stop::singular, result;
+      const double change = keep_length(way, t, r);
+      if (!std::isfinite(change)) break;
+      lambda += change;
+      way += r + change * t;
+    }
+    result.stop = Stop::newton_limit;
+    return result;
+  }
+};
+
+void check_supports(const Run& run, const EquilibriumPath& path, const Step& step) {
+  const Vector target = path.supports.at(1, path.time(1));
+  for (std::size_t k = 0; k < path.supports.fixed.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (path.supports.fixed[k] && std::abs(target[i] - run.now.u[i]) > 1e-14)
+      throw Error(
+          fmt::format("step '{}' moves supports, but arcLength follows loads alone: let the supports stay, or "
+                      "take arcLength=\"false\" and prescribe the displacement",
+                      step.name));
+  }
+}
+
+bool enough(const Run& run, int taken) {
+  const ArcLength& arc = run.model.settings.arc_length;
+  double largest = 0;
+  for (Eigen::Index k = 0; k < run.now.u.size(); k += 3) largest = std::max(largest, run.now.u.segment<3>(k).norm());
+  return taken >= arc.steps || std::abs(run.now.load_factor) >= arc.load || largest >= arc.displacement;
+}
+
+/// Takes the next step along the arc, shorter where it fails.
+bool advance(Arc& arc) {
+  Run& run = arc.run;
+  IncrementResult result;
+  double lambda = 0;
+  for (int cut = 0; cut < most_cuts; ++cut) {
+    result = arc.step(lambda);
+    if (result.stop == Stop::converged) break;
+    arc.length *= 0.5;
+  }
+  if (result.stop != Stop::converged) {
+    run.newton.prepare(run.now.u, arc.path.loads(run.now.load_factor));
+    run.newton.rest();
+    return explain(run, result, run.now.load_factor), false;
+  }
+  const Vector before = run.now.u;
+  const double change = lambda - run.now.load_factor;
+  run.now.u = result.u;
+  run.now.load_factor = lambda;
+  const double steps = run.model.settings.arc_length.steps;
+  run.now.time += arc.path.duration / steps;
+  ++run.now.increment;
+  run.set_reactions(run.newton.forces().residual(), arc.path.supports);
+  run.account(before);
+  const Vector moved = result.u - before;
+  if (run.now.increment > 1 && change * run.piece < 0)
+    run.outcome.notes.push_back(fmt::format("the load factor turns near {:.6g}, before increment {}: a limit point",
+                                            lambda - change, run.now.increment));
+  run.piece = change;
+  arc.last = moved;
+  const double iterations = static_cast<double>(result.residuals.size());
+  arc.length *= std::clamp(std::sqrt(good_iterations / iterations), 0.5, 1.5);
+  return true;
+}
+
+}  // namespace
+
+void run_arc_length(Run& run) {
+  const Model& model = run.model;
+  for (const Step& step : model.steps) check_held(model, step);
+  run.newton.prepare(run.now.u, {});
+  run.newton.rest();
+  run.now.load_factor = 0;
+  run.mark();
+  if (!run.accept()) return;
+  for (std::size_t s = 0; s < model.steps.size(); ++s) {
+    const Step& step = model.steps[s];
+    run.now.step = static_cast<int>(s);
+    const LoadSet* goal = &run.equations.loads(run.now.step);
+    const LoadSet* before = s > 0 ? &run.equations.loads(run.now.step - 1) : nullptr;
+    EquilibriumPath path{
+        {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
+    const double held = s > 0 ? run.now.load_factor : 0;
+    path.loads = [&, held](double share) {
+      ScaledLoads loads{{goal, share, path.start}};
+      if (before) loads.push_back({before, (1 - share) * held, path.start, true});
+      return loads;
+    };
+    check_supports(run, path, step);
+    run.now.load_factor = 0;
+    Arc arc{run, path,
+            run.equations.has_followers() ? make_unsymmetric(model.settings.threads)
+                                          : make_indefinite(model.settings.threads),
+            BlockMatrix(run.newton.tangent().pattern)};
+    for (int taken = 0; !enough(run, taken); ++taken)
+      if (!advance(arc) || !run.accept()) return;
+  }
+}
+
+}  // namespace msml::fe

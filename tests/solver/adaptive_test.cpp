@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Automatic step control: fewer steps for the same error, reported states where the scene wants them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "tests/solver/law_by_name.hpp"
+#include "tests/solver/oscillator.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+
+TEST(AdaptiveStep, KeepsTheReportedTimesAndBoundsTheError) {
+  const Oscillator o = oscillator(true);
+  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark, Integrator::generalized_alpha}) {
+    double before = 1;
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+      Model model = oscillator_model(integrator, true, o.period() / 4, 4);
+      model.settings.adaptive_step = true;
+      model.settings.step_tolerance = tolerance;
+      double error = 0;
+      int k = 0;
+      const Outcome outcome = solve(model, [&](const State& state) {
+        EXPECT_NEAR(state.time, k++ * o.period() / 4, 1e-12 * o.period());
+        const double exact = 0.1 / o.k * (1 - std::cos(o.omega() * state.time));
+        error = std::max(error, std::abs(state.displacement(3, 2) - exact) / (0.1 / o.k));
+        return true;
+      });
+      ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+      EXPECT_EQ(k, 5);
+      std::cout << name(integrator) << ", stepTolerance " << tolerance << ": error " << error << ", "
+                << outcome.linear_solves << " solves\n";
+      // The local error is of order p + 1 in the step, the error at the end of order p: a tenth of the tolerance leaves
+      // 10^(-p/(p+1)) of the error, 0.32 for backward Euler and 0.22 for the others, and a little more on large steps.
+      if (tolerance < 2e-4) {
+        EXPECT_LT(error / before, integrator == Integrator::implicit_euler ? 0.4 : 0.27);
+      } else {
+        EXPECT_LT(error, before);
+      }
+      before = error;
+    }
+  }
+}
+
+// Three times its length in two reported states.
+TEST(AdaptiveStep, CutsAndGrowsLoadSteps) {
+  Model model = make_model(box_mesh(4, 1, 1, {4, 1, 1}, CellKind::tet4), {});
+  model.regions[0].law = neo_hookean("log", 100, 0.3);
+  const auto at = [&](double x) {
+    return points_where(*model.mesh, [=](const Vec3& X) { return std::abs(X[0] - x) < 1e-9; });
+  };
+  model.steps[0].prescribed = {fix(at(0)), {.name = "pull", .nodes = at(4), .values = {Vec3(8, 0, 0)}}};
+  model.settings.adaptive_step = true;
+  model.settings.load_steps = 2;
+  std::vector<double> factors;
+  const Outcome outcome = solve(model, [&](const State& state) { return factors.push_back(state.load_factor), true; });
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_EQ(factors.size(), 3u);
+  EXPECT_EQ(factors.back(), 1);
+  EXPECT_GT(outcome.check.smallest_J, 0);
+}
+
+}  // namespace
+}  // namespace msml::fe

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies that start from impossible shapes: they return to rest, or the trap they fall into is named.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+#include <random>
+
+#include "tests/solver/law_by_name.hpp"
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+using ::testing::HasSubstr;
+
+/// A bar 3 x 1 x 1 of a law that survives inversion, displaced from X to place(X), without loads.
+Model bar(const std::string& form, const std::function<Vec3(const Vec3&)>& place) {
+  Model model = make_model(box_mesh(6, 2, 2, {3, 1, 1}, CellKind::tet4), {});
+  model.regions[0].law = neo_hookean(form, 1000, 0.3);
+  model.settings.newton_iterations = 200;
+  model.initial_displacement.resize(model.mesh->point_count(), 3);
+  for (int n = 0; n < model.mesh->point_count(); ++n) {
+    const Vec3 X = model.mesh->points.row(n).transpose();
+    model.initial_displacement.row(n) = (place(X) - X).transpose();
+  }
+  return model;
+}
+
+void expect_rest(const Model& model, const std::string& what) {
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << what << ": " << outcome.diagnosis;
+  const double off = outcome.state.displacement.rowwise().norm().maxCoeff() / 3;
+  EXPECT_LT(off, 1e-6) << what;
+  EXPECT_LE(outcome.newton_iterations, 200) << what;
+  std::cout << what << ": " << outcome.newton_iterations << " iterations, off by " << off << "\n";
+}
+
+const char* const forms[] = {"cubic", "stable"};
+
+TEST(Recovery, FromEveryVertexAtARandomPlaceWithTheStableLaw) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> place(-1, 2);
+  expect_rest(bar("stable", [&](const Vec3&) { return Vec3(place(engine), place(engine), place(engine)); }),
+              "random, stable");
+}
+
+TEST(Recovery, FromAMirrorImageWithOneFaceHeld) {
+  for (const char* form : forms) {
+    Model model = bar(form, [](const Vec3& X) { return Vec3(-X[0], X[1], X[2]); });
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    expect_rest(model, std::string("mirrored, ") + form);
+  }
+}
+
+TEST(Recovery, FromAFlatBar) {
+  for (const char* form : forms)
+    expect_rest(bar(form, [](const Vec3& X) { return Vec3(0.05 * X[0], X[1], X[2]); }), std::string("flat, ") + form);
+}
+
+TEST(Recovery, FromAFullTwist) {
+  for (const char* form : forms)
+    expect_rest(bar(form,
+                    [](const Vec3& X) {
+                      const double a = 2 * M_PI * X[0] / 3, y = X[1] - 0.5, z = X[2] - 0.5;
+                      return Vec3(X[0], 0.5 + std::cos(a) * y - std::sin(a) * z,
+                                  0.5 + std::sin(a) * y + std::cos(a) * z);
+                    }),
+                std::string("twisted, ") + form);
+}
+
+TEST(Recovery, EveryVertexAtOnePointReturnsWithTheStableLaw) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> shake(-1e-3, 1e-3);
+  expect_rest(bar("stable", [&](const Vec3&) { return Vec3(shake(engine), shake(engine), shake(engine)); }),
+              "one point, stable");
+}
+
+// F = 0 is a strict local minimum of the cubic law.
+TEST(Recovery, ACollapsedEquilibriumIsNamed) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> shake(-1e-3, 1e-3);
+  const Outcome point =
+      solve(bar("cubic", [&](const Vec3&) { return Vec3(shake(engine), shake(engine), shake(engine)); }), {});
+  EXPECT_EQ(point.stop, Stop::collapsed) << name(point.stop) << point.diagnosis;
+  EXPECT_THAT(point.diagnosis, HasSubstr("worst element"));
+  EXPECT_THAT(point.diagnosis, HasSubstr("form=\"stable\""));
+}
+
+}  // namespace
+}  // namespace msml::fe
