@@ -144,10 +144,13 @@ Parsed parse_formulas(const Slot& slot, const std::string& text) {
     return read(part, value) != std::errc::invalid_argument;
   });
   if (!plain) parts = formula_parts(text);
+  if (!plain && length_problem(slot, 1).empty() && text.find(',') == std::string::npos && examine(text).problem.empty())
+    parts = {text};
   for (const std::string& part : parts) {
     Parsed entry = parse_formula(slot, part, fmt::format("{}: entry {} of the list", slot.name, list.size() + 1));
     if (!entry.problem.empty()) {
-      if (!plain && parts.size() > 1 && text.find(',') == std::string::npos)
+      const bool faulty = entry.problem.find("; an expression may use") != std::string::npos;
+      if (faulty && parts.size() > 1 && text.find(',') == std::string::npos)
         entry.problem += "; entries that hold blanks are separated by commas";
       return entry;
     }

@@ -49,13 +49,10 @@ std::string words_for(const std::string& text, const mu::Parser::exception_type&
   const auto at = static_cast<std::size_t>(std::max(0, fault.GetPos()));
   const std::string place =
       at < text.size() ? fmt::format("'{}' at position {}", shortened(token_at(text, at)), at + 1) : "the end";
+  if (fault.GetCode() == mu::ecUNASSIGNABLE_TOKEN) return place + " is unknown";
+  if (fault.GetCode() == mu::ecMISSING_PARENS) return "a closing parenthesis is missing";
+  if (at >= text.size()) return "it ends too early";
   switch (fault.GetCode()) {
-    case mu::ecUNASSIGNABLE_TOKEN:
-      return place + " is unknown";
-    case mu::ecMISSING_PARENS:
-      return "a closing parenthesis is missing";
-    case mu::ecUNEXPECTED_EOF:
-      return "it ends too early";
     case mu::ecTOO_FEW_PARAMS:
       return "a function before " + place + " has too few arguments";
     case mu::ecTOO_MANY_PARAMS:

@@ -66,6 +66,21 @@ std::string balance_text(const fe::Check& check, bool dynamic) {
   return text + line("balance of these", fmt::format("{:.2e}", check.balance));
 }
 
+/// What elements have and particles have not.
+std::string shape_text(const Simulation& simulation, const fe::Check& check, const WorstShape& worst) {
+  std::string text;
+  text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));
+  text +=
+      line("smallest J", fmt::format("{:.4g}{}", check.smallest_J, element_at(simulation, check.smallest_J_element)));
+  text += line("largest strain", fmt::format("{:.3g}", check.largest_strain));
+  text += line("largest rotation", fmt::format("{:.3g} degrees", check.largest_rotation));
+  text += line("smallest dihedral angle",
+               fmt::format("{:.3g} degrees{}", worst.smallest_angle, element_at(simulation, worst.angle_element)));
+  text += line("smallest radius ratio",
+               fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
+  return text;
+}
+
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
@@ -84,16 +99,8 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   std::string text = fmt::format("check of '{}' at t = {:.6g}", simulation.name, outcome.state.time);
   text += balanced ? "\n" : fmt::format(", the last good state (stopped: {})\n", fe::name(outcome.stop));
   if (balanced) text += balance_text(check, fe::is_dynamic(simulation.model.settings.integrator));
-  text += line("volume", fmt::format("{:.6g}, changed by {:+.3g} %", check.volume, 100 * check.volume_change));
   text += line("mass", fmt::format("{:.6g}", check.mass));
-  text +=
-      line("smallest J", fmt::format("{:.4g}{}", check.smallest_J, element_at(simulation, check.smallest_J_element)));
-  text += line("largest strain", fmt::format("{:.3g}", check.largest_strain));
-  text += line("largest rotation", fmt::format("{:.3g} degrees", check.largest_rotation));
-  text += line("smallest dihedral angle",
-               fmt::format("{:.3g} degrees{}", worst.smallest_angle, element_at(simulation, worst.angle_element)));
-  text += line("smallest radius ratio",
-               fmt::format("{:.3g}{}", worst.radius_ratio, element_at(simulation, worst.ratio_element)));
+  if (!simulation.model.regions.empty()) text += shape_text(simulation, check, worst);
   if (check.lowest_period > 0)
     text += line("lowest period", fmt::format("{:.4g}, damped by {:.3g} % a cycle by the time step",
                                               check.lowest_period, 100 * check.damped_per_cycle));

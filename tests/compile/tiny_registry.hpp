@@ -48,6 +48,7 @@ inline Operator make_surface() {
   op.parameter<std::vector<Integer>>("ids", {.optional = true, .doc = "whole numbers"});
   op.parameter<Formula>("height", {.range = positive(), .optional = true, .doc = "above the plane"});
   op.parameter<Formulas>("normal", {.optional = true, .counts = {3}, .doc = "which way it looks"});
+  op.parameter<Formulas>("weights", {.optional = true, .doc = "one or more"});
   op.parameter<Words>("sides", {.optional = true, .choices = {"left", "right"}, .doc = "which are closed"});
   op.parameter<std::vector<double>>("table", {.optional = true, .check = no_fives, .doc = "no fives"});
   const auto surface = op.output<Surface>("surface", "the triangle");

@@ -78,6 +78,8 @@ TEST(Values, ListOfExpressionsIsSplitAtCommasOrBlanks) {
   for (const char* list : {"0 0 1", "0,0,1", "sin(t) 0 0", "1 - X, 0, 0", "{X, atan2(Y, X), 0}", "max(X, 1) 0 0"})
     EXPECT_EQ(of("normal=\"" + std::string(list) + "\""), "") << list;
   EXPECT_EQ(of("normal=\"X Y\""), "s.xml:2: normal has 2 values, but needs 3");
+  EXPECT_EQ(of("weights=\"1 - X\""), "");  // one expression where one value is enough
+  EXPECT_EQ(of("weights=\"X, -Y\""), "");
   EXPECT_EQ(start_of("normal=\"0 0 x\""), "s.xml:2: normal: entry 3 of the list = x: 'x' at position 1 is unknown");
   const std::string hint = of("normal=\"1 - X 0 0\"");
   EXPECT_TRUE(hint.ends_with("; entries that hold blanks are separated by commas")) << hint;
