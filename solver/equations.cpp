@@ -9,7 +9,7 @@ Vector Kinematics::velocity_at(const Vector& u) const {
   Vector v = velocity_factor * (u - start) + velocity;
   for (std::size_t k = 0; k < fixed.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    if (fixed[k]) v[i] = (u[i] - start[i]) / dt;
+    if (fixed[k]) v[i] = !given.empty() && given[k] ? given_velocity[i] : (u[i] - start[i]) / dt;
   }
   return v;
 }
@@ -19,7 +19,8 @@ Vector Kinematics::acceleration_at(const Vector& u) const {
   Vector a = acceleration_factor * (u - start) + acceleration;
   for (std::size_t k = 0; k < fixed.size(); ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    if (fixed[k]) a[i] = ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
+    if (!fixed[k]) continue;
+    a[i] = !given.empty() && given[k] ? given_acceleration[i] : ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
   }
   return a;
 }

@@ -21,6 +21,8 @@ struct Kinematics {
   Mask fixed;                     ///< unknowns that follow `fixed_…` instead: their motion is given
   double dt = 0;                  ///< of fixed unknowns: v = (u - u0)/dt, a = (v - velocity_before)/dt
   Vector velocity_before;
+  Mask given = {};  ///< fixed unknowns whose motion is known from a function: given_velocity, given_acceleration
+  Vector given_velocity = {}, given_acceleration = {};
   double inertia_share = 1, force_share = 1;  ///< of the forces at the end of the step in the balance
   bool dynamic() const { return acceleration_factor > 0; }
   Vector velocity_at(const Vector& u) const;

@@ -130,8 +130,8 @@ double Function::operator()(const Eigen::Vector3d& X, double t) const {
   const double value = parsed_->at(X, t);
   if (!parsed_->range.contains(value))
     throw Error(fmt::format("{} = {} is {} at X = {:g}, Y = {:g}, Z = {:g}, t = {:g}, which is not {}", parsed_->name,
-                            shortened(parsed_->formula.text), value, X[0], X[1], X[2], t,
-                            std::isfinite(value) ? parsed_->range.str() : "finite"),
+                            shortened(parsed_->formula.text), std::isnan(value) ? "nan" : fmt::format("{}", value),
+                            X[0], X[1], X[2], t, std::isfinite(value) ? parsed_->range.str() : "finite"),
                 parsed_->where);
   return value;
 }

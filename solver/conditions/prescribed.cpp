@@ -24,6 +24,20 @@ Vector Supports::at(double share, double time) const {
   return value;
 }
 
+void Supports::drive(double time, double dt, Vector& velocity, Vector& acceleration, Mask& given) const {
+  const double h = 0.1 * dt;
+  for (std::size_t m = 0; m < moved.size(); ++m) {
+    const Vec3 before = moved[m].at(time - h), now = moved[m].at(time), after = moved[m].at(time + h);
+    for (int c = 0; c < 3; ++c) {
+      const int k = 3 * moved[m].node + c;
+      if (moved_by[static_cast<std::size_t>(k)] != static_cast<int>(m)) continue;
+      given[static_cast<std::size_t>(k)] = 1;
+      velocity[k] = (after[c] - before[c]) / (2 * h);
+      acceleration[k] = (after[c] - 2 * now[c] + before[c]) / (h * h);
+    }
+  }
+}
+
 Supports make_supports(const Step& step, const Numbering& numbering, const Vector& u) {
   const std::size_t size = static_cast<std::size_t>(3 * numbering.nodes());
   Supports supports{Mask(size, 0), u, u, Mask(size, 0), {}, std::vector<int>(size, -1), {}};

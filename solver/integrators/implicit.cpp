@@ -39,6 +39,15 @@ struct Trial {
   Vector velocity, acceleration;
 };
 
+/// Supports that move by functions of time have the velocity and acceleration of these. Backward Euler takes
+/// differences, as it does everywhere.
+void follow(const Supports& supports, double time, Kinematics& motion) {
+  if (supports.moved.empty()) return;
+  motion.given.assign(supports.fixed.size(), 0);
+  motion.given_velocity = motion.given_acceleration = Vector::Zero(motion.start.size());
+  supports.drive(time, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
+}
+
 /// The step from the present state to a time; nothing is kept.
 Trial try_step(Stage& stage, double time, const Forces& start_forces, bool damped) {
   Run& run = stage.run;
@@ -52,6 +61,7 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
                             damped ? &stage.C : nullptr,
                             {},
                             &stage.supports.slides}};
+  if (settings.integrator != Integrator::implicit_euler) follow(stage.supports, time, trial.increment.motion);
   trial.increment.offset = carried(trial.increment.motion, start_forces);
   run.equations.begin_step(h);
   if (run.equations.has_history()) run.newton.forget();

@@ -154,5 +154,43 @@ TEST(TimeFunctions, StaticStatesFollowTheLoadCurve) {
   EXPECT_EQ(times, (std::vector<double>{0, 0.5, 1, 1.5, 2}));
 }
 
+/// One tetrahedron with unit edges along the axes; its node 3 moves along z, the others with b sin(W t). By hand, with
+/// V = 1/6, k = V (lambda + 2 mu) and consistent mass m = rho V/10, 3 rho V/20 to the three others:
+/// m z'' + 1.5 m u'' + k (z - u) = 0 from rest has z = A (sin W t - W/w sin w t), A = b (w^2 + 1.5 W^2)/(w^2 - W^2).
+double error_of_driven_oscillator(Integrator integrator, int count) {
+  Mesh mesh;
+  mesh.points.resize(4, 3);
+  mesh.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+  const int nodes[4] = {0, 1, 2, 3};
+  mesh.add_cell(CellKind::tet4, nodes);
+  constexpr double E = 100, nu = 0.25, rho = 3, b = 0.01;
+  Model model = make_model(std::move(mesh), {.youngs_modulus = E, .poisson_ratio = nu, .strain = Strain::small}, rho);
+  const double mu = E / (2 * (1 + nu)), lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+  const double w = std::sqrt((lambda + 2 * mu) / 6 / (rho / 60)), W = 0.6 * w, end = 5 / w;
+  model.settings.integrator = integrator;
+  model.settings.tolerance = 1e-12;
+  Step& step = model.steps[0];
+  step.dt = end / count;
+  step.count = count;
+  step.prescribed = {{.name = "base",
+                      .nodes = {0, 1, 2},
+                      .values = {},
+                      .function = [=](const Vec3&, double t) { return Vec3(0, 0, b * std::sin(W * t)); }},
+                     fix({3}, true, true, false)};
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  const double A = b * (w * w + 1.5 * W * W) / (w * w - W * W);
+  return std::abs(outcome.state.displacement(3, 2) - A * (std::sin(W * end) - W / w * std::sin(w * end))) / b;
+}
+
+TEST(TimeFunctions, MovedSupportsKeepTheOrderOfTheMethod) {
+  for (const Integrator integrator : {Integrator::newmark, Integrator::generalized_alpha, Integrator::implicit_euler}) {
+    const double order = integrator == Integrator::implicit_euler ? 1 : 2;
+    const double coarse = error_of_driven_oscillator(integrator, 100),
+                 fine = error_of_driven_oscillator(integrator, 200);
+    EXPECT_NEAR(std::log2(coarse / fine), order, 0.15) << name(integrator);
+  }
+}
+
 }  // namespace
 }  // namespace msml::fe
