@@ -51,7 +51,7 @@ struct Material {
 std::vector<Material> materials(const Record& args, const Report& fault) {
   std::vector<Material> found;
   for (const Record* record : all_of(args, "material"))
-    if (complete(*record))
+    if (complete(*record) && record->tag() != "pointMass")
       if (const auto law = attempt<LawPtr>(*record, fault)) found.push_back({record, *law});
   return found;
 }
@@ -61,6 +61,8 @@ std::vector<Material> materials(const Record& args, const Report& fault) {
 void examine_scene(const Record& args, const Report& fault) {
   Silent silent;
   materials(args, fault);
+  for (const Record* record : all_of(args, "output"))
+    if (complete(*record)) attempt<OutputRequest>(*record, fault);
   if (const Record* solver = first_of(args, "solver"))
     if (const auto settings = attempt<SettingsBuilder>(*solver, fault)) try {
         (*settings)(silent, 1);

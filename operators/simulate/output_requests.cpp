@@ -103,16 +103,15 @@ Factory<OutputRequest> probe() {
   tag.note("File: ID.csv, a line of names, then a line per state: the time and the components of the field.");
   tag.note("At a point, a field given at elements has the value of the element that holds the point.");
   tag.build([=](const Record& record) {
-    const bool nodes =
-        type(record.values[static_cast<std::size_t>(record.description->find("indices"))]) != Type::nothing;
-    if (record.has(point) == nodes) refuse(record, "needs either point or indices");
+    const bool nodes = record.given[static_cast<std::size_t>(record.description->find("indices"))];
+    if (record.is_given(point) == nodes) refuse(record, "needs either point or indices");
     OutputRequest request{.id = file_stem(record, id),
                           .every = static_cast<int>(record[every]),
                           .fields = {record[field]},
                           .where = record.where,
                           .kind = OutputKind::probe,
                           .record = &record};
-    if (!nodes) request.point = Vec3(record[point][0], record[point][1], record[point][2]);
+    if (record.has(point)) request.point = Vec3(record[point][0], record[point][1], record[point][2]);
     return request;
   });
   return tag;

@@ -24,16 +24,30 @@ Vector Supports::at(double share, double time) const {
   return value;
 }
 
-void Supports::drive(double time, double dt, Vector& velocity, Vector& acceleration, Mask& given) const {
+void Supports::set_off(double time, double dt, Vector& velocity) const {
   const double h = 0.1 * dt;
   for (std::size_t m = 0; m < moved.size(); ++m) {
-    const Vec3 before = moved[m].at(time - h), now = moved[m].at(time), after = moved[m].at(time + h);
+    const Vec3 rate = (4 * moved[m].at(time + h) - 3 * moved[m].at(time) - moved[m].at(time + 2 * h)) / (2 * h);
     for (int c = 0; c < 3; ++c) {
       const int k = 3 * moved[m].node + c;
+      if (moved_by[static_cast<std::size_t>(k)] == static_cast<int>(m)) velocity[k] = rate[c];
+    }
+  }
+}
+
+void Supports::drive(double time, double shift, double dt, Vector& velocity, Vector& acceleration, Mask& given) const {
+  const double h = 0.1 * dt;
+  for (std::size_t m = 0; m < moved.size(); ++m) {
+    const MovedNode& node = moved[m];
+    const Vec3 velocities = (node.at(time + h) - node.at(time - h)) / (2 * h);
+    const double late = time + shift;
+    const Vec3 accelerations = (node.at(late + h) - 2 * node.at(late) + node.at(late - h)) / (h * h);
+    for (int c = 0; c < 3; ++c) {
+      const int k = 3 * node.node + c;
       if (moved_by[static_cast<std::size_t>(k)] != static_cast<int>(m)) continue;
       given[static_cast<std::size_t>(k)] = 1;
-      velocity[k] = (after[c] - before[c]) / (2 * h);
-      acceleration[k] = (after[c] - 2 * now[c] + before[c]) / (h * h);
+      velocity[k] = velocities[c];
+      acceleration[k] = accelerations[c];
     }
   }
 }

@@ -26,9 +26,12 @@ struct Supports {
   Slides slides = {};
   /// Values at a share of the step in (0, 1] and the time there; entries of free unknowns are 0.
   Vector at(double share, double time) const;
-  /// Velocities and accelerations of the moved unknowns at a time, by central differences over a fifth of dt: of second
-  /// order in dt, as the methods that use them. Entries of other unknowns stay; `given` marks what is set.
-  void drive(double time, double dt, Vector& velocity, Vector& acceleration, Mask& given) const;
+  /// Velocities of the moved unknowns just after a time, by one-sided differences; entries of others stay.
+  void set_off(double time, double dt, Vector& velocity) const;
+  /// Velocities of the moved unknowns at a time and their accelerations at time + shift, by central differences over a
+  /// fifth of dt: of second order in dt, as the methods that use them. Entries of other unknowns stay; `given` marks
+  /// what is set.
+  void drive(double time, double shift, double dt, Vector& velocity, Vector& acceleration, Mask& given) const;
 };
 
 /// `u` is the displacement at the start of the step. Where two conditions fix one unknown, the later wins. Nodes that

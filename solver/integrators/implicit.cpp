@@ -45,7 +45,10 @@ void follow(const Supports& supports, double time, Kinematics& motion) {
   if (supports.moved.empty()) return;
   motion.given.assign(supports.fixed.size(), 0);
   motion.given_velocity = motion.given_acceleration = Vector::Zero(motion.start.size());
-  supports.drive(time, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
+  // Where the balance holds between the ends of the step, the accelerations at the ends belong to times apart from
+  // them.
+  const double shift = (motion.force_share - motion.inertia_share) * motion.dt;
+  supports.drive(time, shift, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
 }
 
 /// The step from the present state to a time; nothing is kept.
@@ -156,6 +159,7 @@ void run_implicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+    if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
     run.set_reactions(run.newton.forces().residual(), supports);
