@@ -17,14 +17,15 @@ class EnergiesWriter final : public OutputWriter {
       : every_(request.every),
         file_(folder / (request.id + ".csv"),
               {"time", "elastic", "kinetic", "external_work", "dissipated", "momentum_x", "momentum_y", "momentum_z",
-               "angular_momentum_x", "angular_momentum_y", "angular_momentum_z"}) {}
+               "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "load_factor"}) {}
 
   bool wants(const fe::State& state) const override { return state.increment % every_ == 0; }
 
   void write(const fe::State& state, StateFields&) override {
     const fe::Energies& e = state.energies;
     const Vec3 &p = e.momentum, &L = e.angular_momentum;
-    file_.add({state.time, e.elastic, e.kinetic, e.external_work, e.dissipated, p[0], p[1], p[2], L[0], L[1], L[2]});
+    file_.add({state.time, e.elastic, e.kinetic, e.external_work, e.dissipated, p[0], p[1], p[2], L[0], L[1], L[2],
+               state.load_factor});
     last_ = state.increment;
     file_.save(false);
   }

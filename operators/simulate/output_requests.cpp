@@ -124,7 +124,7 @@ Factory<OutputRequest> energies() {
   tag.produces(Type::file);
   tag.note(
       "File: ID.csv with the columns time, elastic and kinetic energy, work of loads and moved supports, energy "
-      "dissipated by damping, momentum and angular momentum about the origin.");
+      "dissipated by damping, momentum and angular momentum about the origin, and in statics the share of the loads.");
   tag.build([=](const Record& record) {
     return OutputRequest{.id = file_stem(record, id),
                          .every = static_cast<int>(record[every]),

@@ -133,7 +133,7 @@ TEST(EnergiesOutput, HoldTheWorkOfTheLoad) {
   const std::string csv = file(language, pulled(language, energies), "e.csv");
   EXPECT_EQ(first_line(csv),
             "time,elastic,kinetic,external_work,dissipated,momentum_x,momentum_y,momentum_z,angular_momentum_x,"
-            "angular_momentum_y,angular_momentum_z");
+            "angular_momentum_y,angular_momentum_z,load_factor");
   const Numbers last = rows(csv).back();
   EXPECT_NEAR(last[1], 0.05, 1e-9);
   EXPECT_NEAR(last[3], 0.05, 1e-9);

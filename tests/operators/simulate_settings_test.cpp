@@ -52,6 +52,13 @@ TEST(Solver, AttributesReachTheModel) {
                               {"linearTolerance", 1e-6},
                               {"lineSearch", false},
                               {"loadSteps", Integer{3}},
+                              {"adaptiveStep", true},
+                              {"stepTolerance", 0.01},
+                              {"arcLength", true},
+                              {"arcSteps", Integer{9}},
+                              {"largestLoadFactor", 2.0},
+                              {"largestDisplacement", 3.0},
+                              {"allowInverted", true},
                               {"definiteness", std::string("always")},
                               {"beta", 0.3},
                               {"gamma", 0.6},
@@ -70,6 +77,13 @@ TEST(Solver, AttributesReachTheModel) {
   EXPECT_EQ(made.linear_tolerance, 1e-6);
   EXPECT_FALSE(made.line_search);
   EXPECT_EQ(made.load_steps, 3);
+  EXPECT_TRUE(made.adaptive_step);
+  EXPECT_EQ(made.step_tolerance, 0.01);
+  EXPECT_TRUE(made.arc_length.on);
+  EXPECT_EQ(made.arc_length.steps, 9);
+  EXPECT_EQ(made.arc_length.load, 2);
+  EXPECT_EQ(made.arc_length.displacement, 3);
+  EXPECT_TRUE(made.allow_inverted);
   EXPECT_EQ(made.definiteness, fe::Definiteness::always);
   EXPECT_EQ(made.newmark_beta, 0.3);
   EXPECT_EQ(made.newmark_gamma, 0.6);
