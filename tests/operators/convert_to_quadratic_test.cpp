@@ -67,7 +67,7 @@ double curved_volume(const Value& mesh) {
 TEST(ConvertToQuadratic, ProjectedBoundariesLowerTheVolumeErrorOfABallByAnOrder) {
   const double exact = 4 * pi / 3;
   const Value straight = run(tag, {{"mesh", ball(3)}});
-  Listener listener;
+  QuietReporter listener;
   const Value curved = run(tag, {{"mesh", ball(3)}, {"projectOnto", fine_sphere()}}, &listener);
   EXPECT_NEAR(curved_volume(straight), total_volume(*output<Mesh>(straight)), 1e-12);  // straight edges: the same body
   EXPECT_LT(std::abs(curved_volume(curved) - exact), 0.1 * std::abs(curved_volume(straight) - exact));
@@ -84,7 +84,7 @@ TEST(ConvertToQuadratic, ElementsThatWouldInvertKeepStraightEdges) {
   one.points << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
   one.add_cell(CellKind::tet4, std::array<int, 4>{0, 1, 2, 3}.data());
   const Value surface = std::make_shared<const Surface>(box(Vec3(5, 5, 5), Vec3(6, 6, 6)));
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(tag, {{"mesh", stored(one)}, {"projectOnto", surface}}, &listener));
   EXPECT_NEAR(curved_volume(std::make_shared<const Mesh>(*mesh)), 1.0 / 6, 1e-15);
   ASSERT_EQ(listener.warnings.size(), 1u);

@@ -16,7 +16,7 @@ Value unit_cube(bool quadratic = false) {
 }
 
 std::shared_ptr<const IndexSet> select(const Value& mesh, const std::string& what, const Numbers& box,
-                                       Listener* listener = nullptr) {
+                                       QuietReporter* listener = nullptr) {
   return output<IndexSet>(run("ComputeIndicesFromBoxROI", {{"mesh", mesh}, {"select", what}, {"box", box}}, listener));
 }
 
@@ -50,7 +50,7 @@ TEST(IndicesFromBox, SurfaceElementsAreCellIdsOfTheMixedGrid) {
 }
 
 TEST(IndicesFromBox, AnEmptyBoxIsWarnedOfWithTheBoundsOfTheMesh) {
-  Listener listener;
+  QuietReporter listener;
   EXPECT_TRUE(select(unit_cube(), "points", {2, 2, 2, 3, 3, 3}, &listener)->ids.empty());
   ASSERT_EQ(listener.warnings.size(), 1u);
   EXPECT_EQ(listener.warnings[0], "no points lie in the box; the mesh reaches from (0 0 0) to (1 1 1)");

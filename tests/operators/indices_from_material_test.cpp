@@ -14,7 +14,7 @@ Value two_regions() {
   return std::make_shared<const Mesh>(mesh);
 }
 
-std::vector<int> ids(const std::string& kind, Integer num, Listener* listener = nullptr) {
+std::vector<int> ids(const std::string& kind, Integer num, QuietReporter* listener = nullptr) {
   const Value mesh = two_regions();
   const auto set =
       output<IndexSet>(run("ComputeIndicesFromMaterialId", {{"mesh", mesh}, {"num", num}, {"type", kind}}, listener));
@@ -34,7 +34,7 @@ TEST(IndicesFromMaterial, PointsAreThoseOfAllCellsOfTheRegion) {
 }
 
 TEST(IndicesFromMaterial, AnUnknownRegionIsWarnedOfWithTheKnownOnes) {
-  Listener listener;
+  QuietReporter listener;
   EXPECT_TRUE(ids("elements", 8, &listener).empty());
   ASSERT_EQ(listener.warnings.size(), 1u);
   EXPECT_EQ(listener.warnings[0],

@@ -22,13 +22,13 @@ Image ball() {
   return image;
 }
 
-SurfacePtr level(const Image& image, double iso, test::Listener* listener = nullptr) {
+SurfacePtr level(const Image& image, double iso, test::QuietReporter* listener = nullptr) {
   return test::output<Surface>(
       test::run("vtkMarchingCube", {{"image", std::make_shared<const Image>(image)}, {"isoValue", iso}}, listener));
 }
 
 TEST(MarchingCubes, FindsTheSphereAndFacesOutwards) {
-  test::Listener listener;
+  test::QuietReporter listener;
   const SurfacePtr s = level(ball(), 1, &listener);
   for (int i = 0; i < s->point_count(); ++i)
     EXPECT_NEAR((s->points.row(i).transpose() - Vec3::Ones()).norm(), 1,
@@ -52,7 +52,7 @@ TEST(MarchingCubes, FollowsATurnedImage) {
 }
 
 TEST(MarchingCubes, WarnsWhereTheObjectTouchesTheBorder) {
-  test::Listener listener;
+  test::QuietReporter listener;
   level(ball(), -0.2, &listener);  // a sphere of radius 2.2 in a cube of half side 2
   ASSERT_EQ(listener.warnings.size(), 1U);
   EXPECT_THAT(listener.warnings[0], testing::HasSubstr("touches the border"));

@@ -101,7 +101,7 @@ TEST(MeasureQuality, ATet10FoldedBetweenItsNodesIsFound) {
 
 TEST(MeasureQuality, ReportsPercentilesHistogramsAndTheWorstWithTheirPlaces) {
   Mesh mesh = five_tets();
-  Listener listener;
+  QuietReporter listener;
   const Value csv = run("MeasureMeshQuality",
                         {{"mesh", std::make_shared<const Mesh>(mesh)}, {"bins", Integer{2}}, {"worst", Integer{2}}},
                         &listener, "csv");

@@ -36,7 +36,7 @@ Surface joined(const Surface& a, const Surface& b) {
 }
 
 TEST(MeshVolumeFromSurface, FillsASphere) {
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(
       tag, {{"surfaceMesh", sphere(1)}, {"facetSize", 0.2}, {"facetDistance", 0.01}, {"cellSize", 0.2}}, &listener));
   EXPECT_GT(smallest_volume(*mesh), 0);
@@ -110,7 +110,7 @@ TEST(MeshVolumeFromSurface, RepairsWhatLosesNothing) {
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }
   std::swap(soup.triangles[4][0], soup.triangles[4][1]);
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(
       run(tag, {{"surfaceMesh", stored(soup)}, {"preserveFeatures", true}, {"cellSize", 0.5}, {"facetSize", 0.5}},
           &listener));
@@ -153,14 +153,14 @@ TEST(MeshVolumeFromSurface, RefusesASurfaceThatIntersectsItself) {
 }
 
 TEST(MeshVolumeFromSurface, WarnsWhereRefinementIsNotKnownToEnd) {
-  Listener listener;
+  QuietReporter listener;
   run(tag, {{"surfaceMesh", sphere(1)}, {"cellSize", 0.5}, {"facetSize", 0.5}, {"cellRadiusEdgeRatio", 1.9}},
       &listener);
   EXPECT_THAT(listener.warnings, ::testing::ElementsAre(::testing::StartsWith("cellRadiusEdgeRatio = 1.9 is below 2")));
 }
 
 TEST(MeshVolumeFromSurface, RefinementThatRunsAwayIsStopped) {
-  Listener listener;
+  QuietReporter listener;
   operators::MeshingSettings settings{.radius_edge = 1.001, .cell_size = 1};
   const auto small_body = operators::progress_in_points(listener, 1, settings);
   EXPECT_NO_THROW(small_body(100000));
@@ -174,7 +174,7 @@ TEST(MeshVolumeFromSurface, LeavesNoTetrahedronWithoutHeightBesideSharpEdges) {
   Registry registry;
   add_operators(registry);
   if (!std::filesystem::exists(file) || registry.format(file) == nullptr) GTEST_SKIP() << "no sample data: " << file;
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(
       run(tag, {{"surfaceMesh", registry.read(file, Type::surface)}, {"preserveFeatures", true}}, &listener));
   // Volumes of tetrahedra whose edges are near 1/30 of a body of size 1 are near 1e-5; four points of a plane give

@@ -43,7 +43,7 @@ Arguments with(Arguments arguments, const std::string& name, Value value) {
 }
 
 TEST(MeshVolumeFromVoxels, RegionsAreLabelsWithTheVolumeOfTheirVoxels) {
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(tag, with(fine, "image", stored(two_blocks())), &listener));
   const auto volumes = region_volumes(*mesh);
   ASSERT_THAT(volumes, ElementsAre(Key(-3), Key(70000)));
@@ -92,7 +92,7 @@ TEST(MeshVolumeFromVoxels, SmallLabelsAreMergedIntoTheirSurroundings) {
   fill<std::uint8_t>(image, {2, 2, 2}, {22, 12, 12}, 5);
   fill<std::uint8_t>(image, {8, 6, 6}, {9, 7, 8}, 84);    // two voxels inside label 5
   fill<std::uint8_t>(image, {26, 6, 6}, {27, 7, 9}, 90);  // three voxels outside
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(tag, with(fine, "image", stored(image)), &listener));
   EXPECT_THAT(region_volumes(*mesh), ElementsAre(Key(5)));
   EXPECT_THAT(listener.notes, ElementsAre("label 84 has only 2 voxels and was merged into 5",
@@ -108,7 +108,7 @@ TEST(MeshVolumeFromVoxels, SmallSeparatePartsAreNotMissed) {
     fill<std::uint8_t>(image, low, {low[0] + 4, low[1] + 4, low[2] + 4},
                        n < 3 ? std::uint8_t(1) : std::uint8_t(10 + n));
   }
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(
       run(tag, {{"image", stored(image)}, {"facetSize", 10.0}, {"facetDistance", 2.0}, {"cellSize", 10.0}}, &listener));
   EXPECT_THAT(region_volumes(*mesh), ElementsAre(Key(1), Key(13), Key(14), Key(15), Key(16)));
@@ -121,7 +121,7 @@ TEST(MeshVolumeFromVoxels, AThinPlateKeepsItsLabel) {
   Image image = make_image<std::uint8_t>({60, 60, 60});
   fill<std::uint8_t>(image, {20, 20, 20}, {40, 40, 40}, 1);
   fill<std::uint8_t>(image, {5, 5, 50}, {55, 55, 51}, 2);
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(
       tag, {{"image", stored(image)}, {"facetSize", 30.0}, {"facetDistance", 10.0}, {"cellSize", 30.0}}, &listener));
   EXPECT_THAT(region_volumes(*mesh), ElementsAre(Key(1), Key(2)));
@@ -182,7 +182,7 @@ TEST(MeshVolumeFromVoxels, MeshesEveryLabelOfTheSampleLiver) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no sample data: " << file;
   if (registry.format(file) == nullptr) GTEST_SKIP() << "no reader for " << file;
   const Value image = registry.read(file, Type::image);
-  Listener listener;
+  QuietReporter listener;
   const auto mesh = output<Mesh>(run(tag,
                                      {{"image", image},
                                       {"facetAngle", 30.0},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 
 #include "operators/simulate/build_model.hpp"
 #include "solver/materials/law.hpp"
@@ -26,7 +27,10 @@ Scene bar(const Language& language, const std::string& tag, const Attributes& at
   }
   mesh->cell_fields = {fibres, stiffness};
   scene.mesh = mesh;
-  scene.regions = {language.tag("region", "region", {}, {language.tag(tag, "material", attributes)})};
+  std::vector<int> all(static_cast<std::size_t>(mesh->cell_count()));
+  std::iota(all.begin(), all.end(), 0);
+  scene.regions = {language.tag("region", "region", {{"indices", index_set(mesh, Indexed::elements, all)}},
+                                {language.tag(tag, "material", attributes)})};
   return scene;
 }
 

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 SurfacePtr box(const Vec3& low, const Vec3& high) { return std::make_shared<const Surface>(test::box(low, high)); }
 
-ImagePtr voxelize(const test::Arguments& arguments, test::Listener* listener = nullptr) {
+ImagePtr voxelize(const test::Arguments& arguments, test::QuietReporter* listener = nullptr) {
   return test::output<Image>(test::run("VoxelizeSurfaceMesh", arguments, listener));
 }
 
@@ -69,7 +69,7 @@ TEST(VoxelizeSurfaceMesh, TakesTheReferenceGridEvenIfItIsTurned) {
 TEST(VoxelizeSurfaceMesh, FillsHolesWithAWarning) {
   Surface open = test::box(Vec3::Zero(), Vec3::Ones());
   open.triangles.pop_back();
-  test::Listener listener;
+  test::QuietReporter listener;
   const ImagePtr image =
       voxelize({{"surfaceMesh", std::make_shared<const Surface>(open)}, {"resolution", Integer{4}}}, &listener);
   EXPECT_DOUBLE_EQ(filled_volume(*image), 1);

@@ -12,7 +12,7 @@
 namespace msml::test {
 
 /// Keeps what an operator tells.
-class Listener : public Reporter {
+class QuietReporter : public Reporter {
  public:
   void progress(double, const std::string&) override {}
   void note(const std::string& text) override { notes.push_back(text); }
@@ -26,7 +26,7 @@ class Listener : public Reporter {
 using Arguments = std::map<std::string, Value>;
 
 /// Fills the record from the arguments and the defaults, runs the operator and returns its first output.
-inline Value run(const std::string& tag, const Arguments& arguments, Listener* listener = nullptr,
+inline Value run(const std::string& tag, const Arguments& arguments, QuietReporter* listener = nullptr,
                  const std::string& wanted = "") {
   Registry registry;
   add_operators(registry);
@@ -38,7 +38,7 @@ inline Value run(const std::string& tag, const Arguments& arguments, Listener* l
     record.values.push_back(given ? convert(arguments.at(slot.name), slot.type) : slot.fallback);
     record.given.push_back(given);
   }
-  Listener own;
+  QuietReporter own;
   Context context(record, listener ? *listener : own, ".", 1);
   (*op)(context);
   const int output = wanted.empty() ? op->first_output() : op->find(wanted, true);
