@@ -44,6 +44,15 @@ struct FormulationName {
 /// What `formulation` may say for a kind of element; the first is the default.
 std::vector<FormulationName> formulations(CellKind kind) {
   std::vector<FormulationName> found{{"standard", fe::Formulation::standard, "standard: isoparametric"}};
+  if (kind == CellKind::tet4)
+    found.push_back(
+        {"fbar", fe::Formulation::fbar,
+         "fbar: volume changes averaged over patches of about eight elements, does not lock for poissonRatio "
+         "near 0.5"});
+  if (kind == CellKind::tet10)
+    found.push_back(
+        {"mixed", fe::Formulation::mixed,
+         "mixed: with a pressure linear in each element, for materials near incompressible or incompressible"});
   if (kind == CellKind::tet10)
     found.push_back({"singleRotation", fe::Formulation::single_rotation,
                      "singleRotation: linear elasticity turned with the four corners, stiffness made once (tet10SR)"});

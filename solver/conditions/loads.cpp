@@ -166,8 +166,8 @@ void drop_absent(const Numbering& numbering, Vector& force) {
 void add_gravity(const Step& step, const Numbering& numbering, const ScalarMatrix& mass, LoadSet& loads) {
   const auto add = [g = step.gravity, at_place = step.gravity_function, numbers = &numbering, M = &mass](
                        double t, Vector& force) {
-    Vector gravity(force.size()), weight;
-    for (int n = 0; n < numbers->nodes(); ++n)
+    Vector gravity = Vector::Zero(force.size()), weight;
+    for (int n = 0; n < numbers->body_nodes(); ++n)
       gravity.segment<3>(3 * n) =
           at_place ? at_place(numbers->mesh->points.row(numbers->node_of[static_cast<std::size_t>(n)]).transpose(), t)
                    : g;

@@ -140,7 +140,7 @@ FreeMotions free_motions(const Model& model, const Step& step, const Numbering& 
       if (solver.eigenvalues()[k] >= 1e-12 * largest) continue;
       const Vec3 shift = solver.eigenvectors().col(k).head<3>(), turn = solver.eigenvectors().col(k).tail<3>();
       Vector mode = Vector::Zero(3 * numbering.nodes());
-      for (int n = 0; n < numbering.nodes(); ++n) {
+      for (int n = 0; n < numbering.body_nodes(); ++n) {
         const int point = numbering.node_of[static_cast<std::size_t>(n)];
         if (part_of[static_cast<std::size_t>(point)] != static_cast<int>(id)) continue;
         const Vec3 arm = arm_of(mesh, point, part);
@@ -154,7 +154,7 @@ FreeMotions free_motions(const Model& model, const Step& step, const Numbering& 
     }
     if (free.modes.size() - before < 6) continue;
     free.parts.emplace_back();
-    for (int n = 0; n < numbering.nodes(); ++n)
+    for (int n = 0; n < numbering.body_nodes(); ++n)
       if (part_of[static_cast<std::size_t>(numbering.node_of[static_cast<std::size_t>(n)])] == static_cast<int>(id))
         free.parts.back().push_back(n);
   }

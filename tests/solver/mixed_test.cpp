@@ -31,6 +31,7 @@ std::shared_ptr<const Law> incompressible_rubber() {
       const std::string& slot = material.slots()[s].name;
       if (slot == "youngModulus") record.values[s] = 3.0;
       if (slot == "incompressible") record.values[s] = true;
+      if (slot == "poissonRatio") record.values[s] = Value{};
       record.given[s] = slot == "youngModulus" || slot == "incompressible";
     }
     return material.make(record);
@@ -162,8 +163,8 @@ TEST(Cantilever, BendsAlmostIncompressible) {
   const double fine = beam_tip(4, CellKind::tet10, Formulation::mixed);
   const double exact = fine + (fine - coarse) / 3;  // order 2 in the deflection: the clamped edges are singular
   EXPECT_NEAR(fine, exact, 0.01 * exact);
-  EXPECT_NEAR(beam_tip(8, CellKind::tet4, Formulation::fbar), exact, 0.05 * exact);
-  EXPECT_LT(beam_tip(8, CellKind::tet4, Formulation::standard), 0.5 * exact);
+  EXPECT_NEAR(beam_tip(10, CellKind::tet4, Formulation::fbar), exact, 0.05 * exact);
+  EXPECT_LT(beam_tip(10, CellKind::tet4, Formulation::standard), 0.5 * exact);
 }
 
 /// Sphere A = 1, B = 1.5 of incompressible neo-Hookean rubber with mu = 1; see inflation_pressure.
@@ -202,11 +203,10 @@ TEST(RubberSphere, SwellsUnderPressureAsTheClosedFormSays) {
 }
 
 TEST(RubberSphere, NeedsThePressureOfTheClosedForm) {
-  Model model = rubber_sphere(3);
   for (const double la : {1.1, 1.25}) {
+    Model model = rubber_sphere(3);
     Prescribed inside{.name = "inside", .nodes = points_where(*model.mesh, is_inside)};
     for (const int n : inside.nodes) inside.values.push_back((la - 1) * model.mesh->points.row(n).transpose());
-    model.steps[0].prescribed.resize(3);
     model.steps[0].prescribed.insert(model.steps[0].prescribed.begin(), inside);
     const Outcome outcome = solve(model, {});
     EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
