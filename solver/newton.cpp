@@ -46,6 +46,17 @@ void shift_diagonal(BlockMatrix& A) {
     for (std::size_t i = 0; i < 3; ++i) A.values[9 * static_cast<std::size_t>(p) + 4 * i] *= 1 + shift;
 }
 
+/// Adds a thousandth of the mean diagonal to each diagonal entry.
+void lift_diagonal(BlockMatrix& A) {
+  double sum = 0;
+  const auto entry = [&](int p, std::size_t i) -> double& { return A.values[9 * static_cast<std::size_t>(p) + 4 * i]; };
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) sum += entry(p, i);
+  const double lift = 1e-3 * sum / (3.0 * static_cast<double>(A.pattern->diagonal.size()));
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) entry(p, i) += lift;
+}
+
 /// A x = b with `shifted` factorised instead of the singular A: refines while that helps.
 LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const Mask& fixed, const Vector& b,
                             double tolerance, Vector& x) {
@@ -169,6 +180,7 @@ LinearStatus Newton::factor(const Increment& increment) {
     if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
   }
   if (rigid_free_) shift_diagonal(effective_);
+  if (lifted_) lift_diagonal(effective_);
   if (increment.slides) increment.slides->project(effective_);
   return linear_->factor(effective_, increment.fixed);
 }
@@ -227,7 +239,13 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   evaluate(increment, u, Want::definite_tangent, true);
   tangent_current_ = false;
   definite_taken_ = true;
-  const LinearStatus status = attempt(increment, jump, residual, step);
+  LinearStatus status = attempt(increment, jump, residual, step);
+  // A body crumpled to a point has no stiffness in some direction: a little on the diagonal bounds the step.
+  if (status == LinearStatus::not_positive_definite && energetic_ && forces_.found.smallest_J < 0.1) {
+    lifted_ = true;
+    status = attempt(increment, jump, residual, step);
+    lifted_ = false;
+  }
   // A semidefinite matrix without a factorisation.
   return status == LinearStatus::not_positive_definite ? LinearStatus::singular : status;
 }

@@ -106,6 +106,7 @@ class Newton {
   Forces forces_;
   Want want_;
   bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from
+  bool lifted_ = false;           ///< the diagonal of the definite tangent is raised
   bool searching_ = true;         ///< the line search is on
   bool energetic_ = true;         ///< forces are derivatives of an energy, which the line search looks at
   bool barrier_ = false;          ///< a law does not survive inversion

@@ -24,11 +24,14 @@ class Silent final : public Reporter {
   void record(const std::string&, const std::string&) override {}
 };
 
-/// False where a required attribute comes from another task and is not known yet.
+/// False where an attribute is not known yet: it comes from another task, or differs from place to place.
 bool complete(const Record& record) {
   const auto& slots = record.description->slots();
-  for (std::size_t i = 0; i < slots.size(); ++i)
+  for (std::size_t i = 0; i < slots.size(); ++i) {
     if (slots[i].required && type(record.values[i]) == Type::nothing) return false;
+    const auto* formula = std::get_if<Formula>(&record.values[i]);
+    if (formula && !formula->constant()) return false;
+  }
   return true;
 }
 
