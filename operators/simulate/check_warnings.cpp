@@ -16,6 +16,7 @@ constexpr double tolerable_damping = 0.05;  // amplitude lost per cycle of the l
 constexpr double sliver_angle = 1;          // degrees
 
 void warn_of_locking(const Simulation& simulation, std::vector<std::string>& warnings) {
+  if (simulation.model.formulation == fe::Formulation::fbar) return;
   const bool plane = simulation.body.kind == CellKind::tri3 && simulation.model.plane == fe::Plane::strain;
   if (simulation.body.kind != CellKind::tet4 && !plane) return;
   for (const fe::Region& region : simulation.model.regions)
@@ -23,7 +24,8 @@ void warn_of_locking(const Simulation& simulation, std::vector<std::string>& war
       warnings.push_back(fmt::format(
           "region '{}' has poissonRatio = {}: linear {} lock (are too stiff) from {}. Use {}", region.name,
           region.law->poisson_ratio(), plane ? "triangles" : "tetrahedra", locking_ratio,
-          plane ? "quadraticTriangle" : "quadraticTet, with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
+          plane ? "quadraticTriangle"
+                : "formulation=\"fbar\", or quadraticTet with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
 }
 
 /// Implicit Euler damps a period T by 1 - exp(-2 pi^2 dt/T) per cycle for small dt/T.

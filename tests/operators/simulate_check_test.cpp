@@ -45,7 +45,7 @@ TEST(CheckWarnings, LinearTetrahedraLockFromPoissonRatio045) {
   EXPECT_THAT(
       check_warnings(simulation, harmless(), {}),
       ElementsAre("region 'tissue' has poissonRatio = 0.45: linear tetrahedra lock (are too stiff) from 0.45. Use "
-                  "quadraticTet, with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
+                  "formulation=\"fbar\", or quadraticTet with the mesh from ConvertLinearToQuadraticTetrahedralMesh"));
 }
 
 TEST(CheckWarnings, SmallStrainPastTenDegreesOfRotation) {
