@@ -8,7 +8,6 @@
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/region_materials.hpp"
 #include "operators/simulate/selection.hpp"
-#include "solver/materials/diffusion.hpp"
 #include "solver/registry.hpp"
 
 namespace msml::simulation {
@@ -123,8 +122,6 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
                       .density = density(*records[i]),
                       .elements = owners.elements(i)};
     set_material(*material, body, region);
-    if (material->tag() == "diffusionMaterial")
-      if (fe::PointLaw field = fe::diffusion_field(*material)) region.point_law = std::move(field);
     if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }

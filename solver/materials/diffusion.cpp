@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "msml/core/error.hpp"
-#include "msml/core/formula.hpp"
 
 namespace msml::fe {
 namespace {
@@ -51,6 +50,15 @@ class Diffusion final : public Law {
   bool survives_inversion() const override { return true; }
   int components() const override { return 1; }
   bool small_strain() const override { return true; }
+  std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {
+    Lanes mixed = c_;
+    for (std::size_t lane = 0; lane < others.size(); ++lane) {
+      const auto* other = dynamic_cast<const Diffusion*>(others[lane].get());
+      if (other == nullptr) return {};
+      mixed[lane] = other->c_[lane];
+    }
+    return std::make_shared<const Diffusion>(mixed);
+  }
 
  private:
   static Lanes square(const Gradients& H) { return H(0, 0) * H(0, 0) + H(0, 1) * H(0, 1) + H(0, 2) * H(0, 2); }
@@ -65,29 +73,14 @@ std::shared_ptr<const Law> make_diffusion(const Lanes& coefficients) {
 
 std::shared_ptr<const Law> make_diffusion(double coefficient) { return make_diffusion(lanes_of(coefficient)); }
 
-PointLaw diffusion_field(const Record& record) {
-  const Function coefficient = function(record, Key<Formula>{record.description->find("coefficient")});
-  if (coefficient.constant()) return {};
-  return [coefficient](std::span<const Vec3> places) {
-    Lanes values;
-    for (int lane = 0; lane < lanes; ++lane)
-      values[lane] = coefficient(places[std::min(static_cast<std::size_t>(lane), places.size() - 1)], 0);
-    return make_diffusion(values);
-  };
-}
-
 Factory<std::shared_ptr<const Law>> diffusion_material() {
   Factory<std::shared_ptr<const Law>> tag("diffusionMaterial", "material",
                                           "A scalar problem, such as heat conduction: -div(c grad u) = source.");
-  const auto coefficient = tag.parameter<Formula>(
-      "coefficient", {.range = positive(), .doc = "c: a number, or an expression in X, Y, Z (evaluated at t = 0)"});
+  const auto coefficient = tag.parameter("coefficient", {.range = positive(), .doc = "c, per unit of the gradient"});
   tag.note(
       "Its conditions are fixedValue, source and flux. The results carry u as the field value, in the place of "
       "displacement; stress and strain hold flux and gradient as their xx, xy and xz.");
-  tag.build([=](const Record& record) {
-    const Function c = function(record, coefficient);
-    return make_diffusion(c.constant() ? c(Vec3::Zero(), 0) : 1.0);
-  });
+  tag.build([=](const Record& record) { return make_diffusion(record[coefficient]); });
   return tag;
 }
 

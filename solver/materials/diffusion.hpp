@@ -18,9 +18,6 @@ std::shared_ptr<const Law> make_diffusion(double coefficient);
 /// The same with one coefficient per lane, each > 0.
 std::shared_ptr<const Law> make_diffusion(const Lanes& coefficients);
 
-/// Where the coefficient in a record of diffusionMaterial is an expression: the law at places. Empty for a number.
-PointLaw diffusion_field(const Record& record);
-
 /// The tag `diffusionMaterial`.
 Factory<std::shared_ptr<const Law>> diffusion_material();
 
