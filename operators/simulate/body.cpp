@@ -47,7 +47,7 @@ bool same_mesh(const Mesh& a, const Mesh& b) {
 }
 
 FaceTable::FaceTable(const Body& body) {
-  if (dimension(body.kind) != 3) return;  // particles have no faces
+  if (dimension(body.kind) == 0) return;  // particles have no faces
   std::vector<Entry> all;
   const int sides = side_count(body.kind), count = corner_count(side_kind(body.kind));
   all.reserve(static_cast<std::size_t>(sides) * body.elements.size());

@@ -51,7 +51,6 @@ WorstShape worst_shape(const Body& body) {
   WorstShape worst;
   if (dimension(body.kind) < 2) return worst;
   for (const int id : body.elements) {
-    if (dimension(body.kind) != 3) break;
     const int* nodes = body.mesh->cell(id);
     const auto corner = [&](int i) -> Vec3 { return body.mesh->points.row(nodes[i]).transpose(); };
     const Shape shape = dimension(body.kind) == 3 ? tetrahedron_shape(corner(0), corner(1), corner(2), corner(3))

@@ -61,7 +61,7 @@ TEST(FieldError, RefusesWhatCannotBeCompared) {
             "give either expected or referenceMesh, what the field is to be compared with");
   EXPECT_EQ(test::error_of("ComputeFieldError",
                            {{"mesh", mesh}, {"field", std::string("head")}, {"expected", Formulas{Formula("X")}}}),
-            "field = 'head' is no point field of the mesh; did you mean 'heat'?; it has heat");
+            "field = 'head' is no point field of the mesh (did you mean 'heat'?); it has heat");
 }
 
 TEST(FieldError, AgreesWithItselfOnTheSameMesh) {

@@ -29,7 +29,9 @@ TEST(PlaneStress, LeavesNoStressAcrossThePlane) {
     for (int k = 0; k < 5; ++k) {
       const Point point = evaluate(*plane, in_plane(random));
       EXPECT_LT(std::abs(point.P(2, 2)), 1e-11 * law->shear_modulus()) << name;
-      for (int i = 0; i < 2; ++i) EXPECT_EQ(std::abs(point.P(i, 2)) + std::abs(point.P(2, i)), 0) << name;
+      // Fibres out of the plane shear it.
+      for (int i = 0; i < 2 && law->isotropic(); ++i)
+        EXPECT_EQ(std::abs(point.P(i, 2)) + std::abs(point.P(2, i)), 0) << name;
     }
   }
 }
@@ -93,20 +95,7 @@ TEST(PlaneStress, OfHookesLawIsUniaxialTension) {
 // mu/2 (I1 - 3) - mu ln J + lambda/2 ln^2 J, E = 1000, nu = 0.3 at a stretch of 1.5: nominal stress 378.280176, lateral
 // stretch 0.88017459.
 TEST(PlaneStress, OfTheNeoHookeanLawIsUniaxialTension) {
-  std::shared_ptr<const Law> law;
-  for (const MaterialFactory& material : materials()) {
-    if (material.tag() != "neoHookeanMaterial") continue;
-    Record record = sample_record(material);
-    const auto set = [&](const char* name, const Value& value) {
-      record.values[static_cast<std::size_t>(material.find(name))] = value;
-    };
-    set("youngModulus", 1000.0);
-    set("poissonRatio", 0.3);
-    set("form", std::string("log"));
-    set("volumetric", std::string("lnJ2"));
-    law = material.make(record);
-  }
-  ASSERT_TRUE(law);
+  const auto law = law_of("neoHookeanMaterial", {{"form", std::string("log")}});  // samples: E = 1000, nu = 0.3
   for (const CellKind kind : {CellKind::tri3, CellKind::tri6}) {
     const Model model = pulled(kind, 378.280176, law);
     const Outcome outcome = solve(model, {});
