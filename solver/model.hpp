@@ -243,7 +243,7 @@ struct State {
   /// points of all elements, in solver order; zero in elastic regions. Null where every region is elastic.
   std::shared_ptr<const std::vector<double>> history_stress = nullptr;
   std::vector<double> pressure = {};  ///< mixed elements: #points, positive in compression; empty otherwise
-  double load_factor = 1;  ///< statics: the share of this step's loads that acts
+  double load_factor = 1;             ///< statics: the share of this step's loads that acts
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.
