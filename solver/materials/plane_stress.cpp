@@ -41,6 +41,7 @@ class PlaneStress final : public Law {
   double shear_modulus() const override { return law_->shear_modulus(); }
   bool exact_tangent() const override { return law_->exact_tangent(); }
   bool survives_inversion() const override { return law_->survives_inversion(); }
+  bool isotropic() const override { return law_->isotropic(); }
   bool small_strain() const override { return law_->small_strain(); }
 
  private:
