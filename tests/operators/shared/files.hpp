@@ -3,6 +3,8 @@
 #pragma once
 #include <unistd.h>
 
+#include <cstdlib>
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -14,9 +16,9 @@ namespace msml::test {
 
 class Folder {
  public:
-  explicit Folder(const std::string& name)
-      : path_(std::filesystem::temp_directory_path() / (name + "_" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
+  explicit Folder(const std::string& name) {
+    std::string pattern = (std::filesystem::temp_directory_path() / (name + "_XXXXXX")).string();
+    path_ = ::mkdtemp(pattern.data());
   }
   ~Folder() {
     std::error_code ignored;
