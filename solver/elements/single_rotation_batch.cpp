@@ -51,7 +51,7 @@ Lanes apply_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes
     for (Lanes& entry : row) entry = Lanes{};
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
-      const Lanes* K = batch.K[packed_entry(b, a)];
+      const Lanes* K = batch.K[packed(b, a)];
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           q[a][i] += K[3 * i + j] * d[b][j];
@@ -79,7 +79,7 @@ void rotate_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes
   };
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
-      const Lanes* K = batch.K[packed_entry(b, a)];
+      const Lanes* K = batch.K[packed(b, a)];
       add(d[a], K, false, N[b]);
       if (a != b) add(d[b], K, true, N[a]);
     }
@@ -152,7 +152,7 @@ void add_rotation_terms(const RotationBatch& batch, const RotationState& state, 
         for (int j = 0; j < 3; ++j) {
           Lanes sum = G[a](0, i) * N[b][j] + G[a](1, i) * N[b][3 + j] + G[a](2, i) * N[b][6 + j];
           if (b < 4) sum += N[a][i] * G[b](0, j) + N[a][3 + i] * G[b](1, j) + N[a][6 + i] * G[b](2, j);
-          H[packed_entry(b, a)][3 * i + j] += sum;
+          H[packed(b, a)][3 * i + j] += sum;
         }
 }
 
