@@ -148,12 +148,6 @@ void check_features(const Model& model) {
     if (region.point_law)
       throw Error(
           fmt::format("region '{}': a material that varies inside elements needs formulation = standard", region.name));
-    if (model.formulation == Formulation::single_rotation &&
-        (region.law->name() != "linearElasticMaterial" || region.law->small_strain()))
-      throw Error(
-          fmt::format("region '{}': formulation = singleRotation is for linearElasticMaterial with "
-                      "strain = corotated; its law is {}{}",
-                      region.name, region.law->name(), region.law->small_strain() ? " of small strain" : ""));
   }
 }
 

@@ -246,6 +246,9 @@ struct State {
   double load_factor = 1;             ///< statics: the share of this step's loads that acts
 };
 
+/// Throws Error where the law of a region does not go with the formulation of its model. Looks at nothing else of them.
+void check_law(const Model& model, const Region& region);
+
 /// Which parts of ElementResults are computed; the others stay empty.
 struct ElementRequest {
   bool law = true;       ///< cauchy, strain, energy_density

@@ -59,11 +59,24 @@ std::vector<Material> materials(const Record& args, const Report& fault) {
   return found;
 }
 
+/// Laws that do not go with the formulation of the elements, at the place of the material.
+void examine_formulation(const Record& args, const std::vector<Material>& found, const Report& fault) {
+  const Record* mesh = first_of(args, "mesh");
+  if (!mesh) return;
+  fe::Model model;
+  model.formulation = formulation_named(text_of(*mesh, "formulation"));
+  for (const Material& material : found) try {
+      check_law(model, {.name = material.record->tag(), .law = material.law});
+    } catch (const Error& error) {
+      fault(Error(error.what(), material.record->where));
+    }
+}
+
 }  // namespace
 
 void examine_scene(const Record& args, const Report& fault) {
   Silent silent;
-  materials(args, fault);
+  examine_formulation(args, materials(args, fault), fault);
   for (const Record* record : all_of(args, "output"))
     if (complete(*record)) attempt<OutputRequest>(*record, fault);
   if (const Record* solver = first_of(args, "solver"))

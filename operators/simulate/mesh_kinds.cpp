@@ -142,6 +142,13 @@ Factory<MeshChoice> particles() {
 
 }  // namespace
 
+fe::Formulation formulation_named(const std::string& name) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
+    for (const FormulationName& each : formulations(kind))
+      if (each.name == name) return each.formulation;
+  return fe::Formulation::standard;
+}
+
 std::vector<Factory<MeshChoice>> mesh_kinds() {
   return {
       kind_of_mesh("linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."),

@@ -25,6 +25,9 @@ struct MeshChoice {
 /// throws Error unless all cells of that dimension are of the kind, and there are some.
 std::vector<Factory<MeshChoice>> mesh_kinds();
 
+/// The formulation of that name, whatever the elements; standard for a name that is none.
+fe::Formulation formulation_named(const std::string& name);
+
 /// The tag `mass`: mass per reference volume.
 Factory<double> mass();
 /// The tag `pointMass`: the mass of each particle of a region.

@@ -27,6 +27,8 @@ void check_cells(const Model& model) {
                                 name(model.mesh->kinds[static_cast<std::size_t>(e)])));
 }
 
+}  // namespace
+
 void check_law(const Model& model, const Region& region) {
   const std::optional<Split> split = region.law->split();
   const bool incompressible = split && !std::isfinite(split->modulus);
@@ -35,6 +37,12 @@ void check_law(const Model& model, const Region& region) {
         "region '{}': {} is incompressible, which needs quadraticTet with formulation=\"mixed\"; or choose a "
         "poissonRatio below 0.5, a finite bulkModulus",
         region.name, region.law->name()));
+  if (model.formulation == Formulation::single_rotation &&
+      (region.law->name() != "linearElasticMaterial" || region.law->small_strain()))
+    throw Error(
+        fmt::format("region '{}': formulation = singleRotation is for linearElasticMaterial with strain = corotated; "
+                    "its law is {}{}",
+                    region.name, region.law->name(), region.law->small_strain() ? " of small strain" : ""));
   if (!splits(model.formulation)) return;
   const char* formulation = spelled(model.formulation);
   if (!split)
@@ -56,8 +64,6 @@ void check_law(const Model& model, const Region& region) {
     throw Error(fmt::format("region '{}': prony does not go with formulation=\"{}\"; choose formulation=\"standard\"",
                             region.name, formulation));
 }
-
-}  // namespace
 
 BatchSplit split_of(const Region& region, std::span<const int> elements) {
   const Split split = (region.local_law ? region.local_law(elements) : region.law)->split().value();
