@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The inner products that every element of solids is made of, eight elements at a time.
 #pragma once
+#include <tbb/parallel_for.h>
+
 #include <cmath>
 #include <cstring>
 
 #include "solver/elements/assembly.hpp"
+#include "solver/elements/chunks.hpp"
 
 namespace msml::fe {
 
@@ -85,6 +88,21 @@ inline void merge(Assembled& sum, const Assembled& part) {
     sum.smallest_J = part.smallest_J;
     sum.smallest_J_element = part.smallest_J_element;
   }
+}
+
+/// Calls add(batch) for every batch, chunks of one colour in parallel, and puts together what they found, in an order
+/// that does not depend on the number of threads.
+template <class Add>
+Assembled add_by_colour(const std::vector<std::vector<Chunk>>& colours, const Add& add) {
+  Assembled sum;
+  for (const auto& chunks : colours) {
+    std::vector<Assembled> parts(chunks.size());
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b) merge(parts[c], add(static_cast<std::size_t>(b)));
+    });
+    for (const Assembled& part : parts) merge(sum, part);
+  }
+  return sum;
 }
 
 }  // namespace msml::fe

@@ -207,16 +207,7 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
 }
 
 Assembled MixedElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
-  Assembled sum;
-  for (const auto& chunks : colours_) {
-    std::vector<Assembled> parts(chunks.size());
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-      for (int b = chunks[c].first; b < chunks[c].last; ++b)
-        merge(parts[c], add_batch(batches_[static_cast<std::size_t>(b)], u, want, force, matrix));
-    });
-    for (const Assembled& part : parts) merge(sum, part);
-  }
-  return sum;
+  return add_by_colour(colours_, [&](std::size_t b) { return add_batch(batches_[b], u, want, force, matrix); });
 }
 
 void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {

@@ -179,16 +179,7 @@ Assembled PatchElements::add_patch(const Patch& patch, const Vector& u, Want wan
 }
 
 Assembled PatchElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
-  Assembled sum;
-  for (const auto& chunks : colours_) {
-    std::vector<Assembled> parts(chunks.size());
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-      for (int p = chunks[c].first; p < chunks[c].last; ++p)
-        merge(parts[c], add_patch(patches_[static_cast<std::size_t>(p)], u, want, force, matrix));
-    });
-    for (const Assembled& part : parts) merge(sum, part);
-  }
-  return sum;
+  return add_by_colour(colours_, [&](std::size_t p) { return add_patch(patches_[p], u, want, force, matrix); });
 }
 
 void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {

@@ -46,6 +46,14 @@ void Run::refuse_pushed_bodies() {
   now.step = 0;
 }
 
+bool Run::start_at_rest() {
+  refuse_pushed_bodies();
+  newton.prepare(now.u, {});
+  newton.rest();
+  mark();
+  return accept();
+}
+
 void Run::check_balanced(const ScaledLoads& loads) const {
   if (free.modes.empty()) return;
   Forces forces;

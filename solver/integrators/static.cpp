@@ -7,11 +7,7 @@ namespace msml::fe {
 void run_static(Run& run) {
   const Model& model = run.model;
   const int parts = model.settings.load_steps;
-  run.refuse_pushed_bodies();
-  run.newton.prepare(run.now.u, {});
-  run.newton.rest();
-  run.mark();
-  if (!run.accept()) return;
+  if (!run.start_at_rest()) return;
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);

@@ -36,6 +36,8 @@ struct Run {
   void hold(const Step& step, const Mask& fixed);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
+  /// Begins statics: refuses pushed bodies and passes the state without loads on; false if the observer wants to stop.
+  bool start_at_rest();
   /// Throws Error unless these loads leave the free rigid motions alone.
   void check_balanced(const ScaledLoads& loads) const;
   State state() const;
