@@ -67,6 +67,16 @@ void BlockMatrix::set_zero() {
   });
 }
 
+void BlockMatrix::assign(const BlockMatrix& A, double s, const ScalarMatrix& M) {
+  values.resize(A.values.size());
+  tbb::parallel_for(Range(0, M.values.size(), 1 << 13), [&](const Range& range) {
+    for (std::size_t p = range.begin(); p < range.end(); ++p) {
+      for (std::size_t k = 0; k < 9; ++k) values[9 * p + k] = A.values[9 * p + k];
+      for (std::size_t i = 0; i < 3; ++i) values[9 * p + 4 * i] += s * M.values[p];
+    }
+  });
+}
+
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
   const Pattern& pattern = *A.pattern;
   y.resize(x.size());

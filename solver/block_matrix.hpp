@@ -25,19 +25,23 @@ using PatternPtr = std::shared_ptr<const Pattern>;
 PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes,
                         const std::vector<std::array<int, 2>>& links = {});
 
-/// values[9 p + 3 i + j] is entry (i, j) of the block at position p.
-struct BlockMatrix {
-  PatternPtr pattern;
-  std::vector<double> values;
-  explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)), values(9 * pattern->columns.size(), 0.0) {}
-  void set_zero();
-};
-
 /// values[p] times the 3 x 3 identity is the block at position p.
 struct ScalarMatrix {
   PatternPtr pattern;
   std::vector<double> values;
   explicit ScalarMatrix(PatternPtr p) : pattern(std::move(p)), values(pattern->columns.size(), 0.0) {}
+};
+
+/// values[9 p + 3 i + j] is entry (i, j) of the block at position p.
+struct BlockMatrix {
+  PatternPtr pattern;
+  std::vector<double> values;
+  explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)), values(9 * pattern->columns.size(), 0.0) {}
+  /// With room for `room` numbers only, until assign() is called.
+  BlockMatrix(PatternPtr p, std::size_t room) : pattern(std::move(p)), values(room, 0.0) {}
+  void set_zero();
+  /// Becomes A + s M.
+  void assign(const BlockMatrix& A, double s, const ScalarMatrix& M);
 };
 
 /// y = A x, in parallel over rows; the result does not depend on the number of threads.

@@ -47,6 +47,11 @@ Equations::Equations(const Model& model)
   }
 }
 
+NodeGeometry Equations::geometry() const {
+  const bool tetrahedra = numbering().kind == CellKind::tet4 || numbering().kind == CellKind::tet10;
+  return {X_, edge_ends(numbering()), tetrahedra && numbering().components == 3};
+}
+
 double Equations::total_mass() const {
   double sum = 0;
   for (const double m : mass_.values) sum += m;

@@ -6,6 +6,7 @@
 #include "solver/conditions/loads.hpp"
 #include "solver/conditions/prescribed.hpp"
 #include "solver/elements/assembly.hpp"
+#include "solver/linear/node_geometry.hpp"
 
 namespace msml::fe {
 
@@ -47,6 +48,7 @@ class Equations {
   const Vector& positions() const { return X_; }  ///< reference positions, 3 per numbered node
   const ScalarMatrix& mass() const { return mass_; }
   const LoadSet& loads(int step) const { return loads_[static_cast<std::size_t>(step)]; }
+  NodeGeometry geometry() const;  ///< what linear solvers want to know of the nodes
   double total_mass() const;
   bool small_strain() const { return small_strain_; }  ///< true if every region's law is
 

@@ -171,7 +171,7 @@ const char* name(Integrator integrator);  ///< as the language spells it
 enum class Definiteness { automatic, always, never };
 
 enum class LinearSolver { direct, cg, automatic };
-enum class Preconditioner { none, jacobi, block_jacobi, incomplete_cholesky, automatic };
+enum class Preconditioner { none, jacobi, block_jacobi, incomplete_cholesky, multigrid, automatic };
 
 /// Follows equilibria through limit points of the load: the factor on the loads is an unknown, and the length of the
 /// displacement's increment is given. The first is that of 1/load_steps of the loads; it adapts. Stops at the first

@@ -85,9 +85,9 @@ Newton::Newton(const Model& model, const Equations& equations)
     : model_(model),
       equations_(equations),
       linear_(equations.numbering().mixed() ? make_indefinite(model.settings.threads)
-                                            : make_linear_system(model.settings, equations.size())),
+                                            : make_linear_system(model.settings, equations.geometry())),
       tangent_(equations.elements().pattern()),
-      effective_(equations.elements().pattern()),
+      effective_(equations.elements().pattern(), 0),
       want_(model.settings.newton_iterations == 1 ? Want::single_tangent : Want::tangent) {
   searching_ = model.settings.line_search;
   survives_.assign(model.mesh->kinds.size(), 0);
@@ -102,6 +102,7 @@ Newton::Newton(const Model& model, const Equations& equations)
 
 void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent) {
   const Stopwatch watch(seconds_assembly_);
+  if (with_tangent) linear_->place(u);
   equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr,
                       with_tangent ? followers_.get() : nullptr);
   equations_.evaluate_motion(increment.motion.velocity_at(u), increment.motion.acceleration_at(u),
@@ -110,6 +111,7 @@ void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bo
 
 void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   const Stopwatch watch(seconds_assembly_);
+  linear_->place(u);
   equations_.evaluate(u, loads, want_, forces_, &tangent_, followers_.get());
   tangent_current_ = true;
 }
@@ -172,12 +174,18 @@ Vector Newton::free_residual(const Increment& increment) const {
 LinearStatus Newton::factor(const Increment& increment) {
   const Kinematics& motion = increment.motion;
   const Settings& settings = model_.settings;
-  effective_.values = tangent_.values;
+  const bool slides = increment.slides && !increment.slides->empty();
+  factored_ = &tangent_;
+  if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
+    return linear_->factor(tangent_, increment.fixed);
+  factored_ = &effective_;
   if (motion.dynamic()) {
     // Divided by force_share, so that the tangent is there as it is.
     const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
-    add(effective_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
+    effective_.assign(tangent_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
     if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
+  } else {
+    effective_.assign(tangent_, 0, equations_.mass());
   }
   if (rigid_free_) shift_diagonal(effective_);
   if (lifted_) lift_diagonal(effective_);
@@ -266,9 +274,14 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
     // The last factorisation of the exact tangent may be of a state far from this one.
     evaluate(increment, result.u, want_, true);
     const Stopwatch watch(seconds_linear_);
-    effective_.values = tangent_.values;
-    if (increment.slides) increment.slides->project(effective_);
-    indefinite_ = indefinite(linear_->factor(effective_, increment.fixed));
+    const bool slides = increment.slides && !increment.slides->empty();
+    if (slides) {
+      effective_.assign(tangent_, 0, equations_.mass());
+      increment.slides->project(effective_);
+    }
+    LinearStatus status = linear_->factor(slides ? effective_ : tangent_, increment.fixed);
+    if (status == LinearStatus::done) status = linear_->probe();
+    indefinite_ = indefinite(status);
   }
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }

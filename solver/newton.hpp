@@ -101,8 +101,9 @@ class Newton {
   const Equations& equations_;
   std::unique_ptr<LinearSystem> linear_;
   std::unique_ptr<LinearSystem> unsymmetric_;  ///< takes over where follower pressure makes the iteration fail
-  BlockMatrix tangent_, effective_;
-  std::unique_ptr<BlockMatrix> followers_;  ///< stiffness of the follower pressure; null without
+  BlockMatrix tangent_, effective_;            ///< effective_: with inertia, damping and what else makes it solvable
+  const BlockMatrix* factored_ = &tangent_;    ///< the one of both that was factorised last
+  std::unique_ptr<BlockMatrix> followers_;     ///< stiffness of the follower pressure; null without
   Forces forces_;
   Want want_;
   bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from

@@ -19,14 +19,14 @@ double Newton::round_off(const Vector& u) const {
   const Points& points = model_.mesh->points;
   const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
   const Numbering& numbering = equations_.numbering();
-  double volume = 1.0 / effective_.pattern->nodes();
+  double volume = 1.0 / factored_->pattern->nodes();
   for (int c = 0; c < numbering.components; ++c) volume *= extent[c];
   const bool exact = equations_.small_strain() || numbering.scalar;
   const double size = exact ? 0 : std::pow(volume, 1.0 / numbering.components);
   double sum = 0;
-  for (const int p : effective_.pattern->diagonal)
+  for (const int p : factored_->pattern->diagonal)
     for (int i = 0; i < 3; ++i) {
-      const double k = effective_.values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
+      const double k = factored_->values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
       sum += k * k;
     }
   return 4e-16 * std::sqrt(sum) * (size + u.cwiseAbs().maxCoeff());

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tags `solver` and `step`.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <map>
 
@@ -40,6 +42,7 @@ const std::map<std::string, fe::Preconditioner>& preconditioners() {
       {"jacobi", fe::Preconditioner::jacobi},
       {"blockJacobi", fe::Preconditioner::block_jacobi},
       {"incompleteCholesky", fe::Preconditioner::incomplete_cholesky},
+      {"multigrid", fe::Preconditioner::multigrid},
       {"auto", fe::Preconditioner::automatic}};
   return known;
 }
@@ -53,11 +56,11 @@ bool of_other_program(const std::string& name) {
 
 fe::Preconditioner preconditioner(const Record& record, const std::string& name, Reporter& reporter) {
   if (const auto known = preconditioners().find(name); known != preconditioners().end()) return known->second;
-  if (name == "multigrid") refuse(record, "preconditioner = multigrid is not available yet; use auto");
+  std::vector<std::string> names;
+  for (const auto& entry : preconditioners()) names.push_back(entry.first);
   if (!of_other_program(name))
-    refuse(record,
-           fmt::format("preconditioner = '{}' is not one of none, jacobi, blockJacobi, incompleteCholesky, auto{}",
-                       name, did_you_mean(name, {"none", "jacobi", "blockJacobi", "incompleteCholesky"})));
+    refuse(record, fmt::format("preconditioner = '{}' is not one of {}{}", name, fmt::join(names, ", "),
+                               did_you_mean(name, names)));
   reporter.note(fmt::format("solver: preconditioner {} belongs to another program; taken as auto", name));
   return fe::Preconditioner::automatic;
 }
@@ -71,15 +74,15 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
        .doc = "static: loads ramped; quasiStatic: equilibrium at each time step; NewmarkShapeMatching: Newmark; the "
               "last three are explicit, with lumped mass and a largest stable dt"});
   keys.linear = tag.parameter<std::string>(
-      "linearSolver",
-      {.fallback = "auto",
-       .choices = {"direct", "iterativeCG", "CG", "GMRES", "auto"},
-       .doc = "direct: sparse Cholesky; CG, GMRES: conjugate gradients; auto and MSML's iterativeCG: by size"});
+      "linearSolver", {.fallback = "auto",
+                       .choices = {"direct", "iterativeCG", "CG", "GMRES", "auto"},
+                       .doc = "direct: sparse Cholesky; CG, GMRES: conjugate gradients; auto and MSML's iterativeCG: "
+                              "direct when small, multigrid for larger solids"});
   keys.preconditioner = tag.parameter<std::string>(
       "preconditioner",
       {.fallback = "auto",
-       .doc = "of conjugate gradients: none, jacobi, blockJacobi, incompleteCholesky or auto; names of "
-              "other programs, written in capitals, count as auto"});
+       .doc = "of conjugate gradients: none, jacobi, blockJacobi, incompleteCholesky, multigrid (solids of "
+              "tetrahedra) or auto; names of other programs, written in capitals, count as auto"});
   keys.unit = tag.parameter<std::string>(
       "processingUnit",
       {.fallback = "CPU", .choices = {"CPU", "CPUDouble", "GPU"}, .doc = "all run on the CPU in double precision"});

@@ -42,6 +42,9 @@ bool is_scalar(const Model& model);
 /// Vectors always have 3 numbers per node; those that a problem does not have are fixed at zero (make_supports).
 int components(const Model& model);
 
+/// Of each mid node of quadratic elements the ends of its edge, {-1, -1} of other nodes; empty for linear elements.
+std::vector<std::array<int, 2>> edge_ends(const Numbering& numbering);
+
 /// 1 for the two components of each additional node that mean nothing, and for its pressure too if `all`; 0 elsewhere.
 std::vector<char> pressure_mask(const Numbering& numbering, bool all);
 

@@ -117,6 +117,20 @@ Numbering number(const Model& model) {
   return numbering;
 }
 
+std::vector<std::array<int, 2>> edge_ends(const Numbering& numbering) {
+  constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};  // of line3 the first, of tri6 three
+  const int nodes = node_count(numbering.kind);
+  const int mids = nodes == 10 ? 6 : nodes == 6 ? 3 : numbering.kind == CellKind::line3 ? 1 : 0;
+  if (mids == 0) return {};
+  std::vector<std::array<int, 2>> ends(static_cast<std::size_t>(numbering.nodes()), {-1, -1});
+  for (std::size_t first = 0; first < numbering.element_nodes.size(); first += static_cast<std::size_t>(nodes)) {
+    const int* element = numbering.element_nodes.data() + first;
+    for (int m = 0; m < mids; ++m)
+      ends[static_cast<std::size_t>(element[nodes - mids + m])] = {element[edges[m][0]], element[edges[m][1]]};
+  }
+  return ends;
+}
+
 Points to_points(const Numbering& numbering, const Vector& values) {
   Points points = Points::Zero(static_cast<Eigen::Index>(numbering.number_of.size()), 3);
   for (int n = 0; n < numbering.body_nodes(); ++n)

@@ -75,8 +75,9 @@ namespace {
 /// Conjugate gradients until they fail, Cholesky from then on.
 class WithFallback final : public LinearSystem {
  public:
-  explicit WithFallback(const Settings& settings)
-      : settings_(settings), active_(make_conjugate_gradient(settings.preconditioner)) {}
+  WithFallback(const Settings& settings, std::unique_ptr<LinearSystem> first)
+      : settings_(settings), active_(std::move(first)) {}
+  void place(const Vector& displacement) override { active_->place(displacement); }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
     matrix_ = &A;
@@ -95,6 +96,7 @@ class WithFallback final : public LinearSystem {
     return status == LinearStatus::done ? active_->solve(b, tolerance, x) : status;
   }
 
+  LinearStatus probe() override { return active_->probe(); }
   std::size_t factor_bytes() const override { return active_->factor_bytes(); }
 
  private:
@@ -106,13 +108,19 @@ class WithFallback final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns) {
-  constexpr long direct_limit = 600000;
-  const bool direct = settings.linear_solver == LinearSolver::direct ||
-                      (settings.linear_solver == LinearSolver::automatic && unknowns <= direct_limit);
-  if (direct) return make_cholesky(settings.threads);
-  if (unknowns <= direct_limit) return std::make_unique<WithFallback>(settings);
-  return make_conjugate_gradient(settings.preconditioner);
+std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, const NodeGeometry& geometry) {
+  // The factor of a tet10 mesh passes about 16 GB at the upper limit; below the lower one a factorisation is as fast.
+  constexpr long largest_factor = 600000, smallest_iterated = 3000;
+  const long unknowns = geometry.positions.size();
+  const bool factored = settings.linear_solver == LinearSolver::direct ||
+                        (settings.linear_solver == LinearSolver::automatic &&
+                         (unknowns <= smallest_iterated || (!geometry.solid && unknowns <= largest_factor)));
+  if (factored) return make_cholesky(settings.threads);
+  const bool multigrid = settings.preconditioner == Preconditioner::multigrid ||
+                         (settings.preconditioner == Preconditioner::automatic && geometry.solid);
+  auto iterative = multigrid ? make_multigrid(geometry) : make_conjugate_gradient(settings.preconditioner);
+  if (unknowns <= largest_factor) return std::make_unique<WithFallback>(settings, std::move(iterative));
+  return iterative;
 }
 
 }  // namespace msml::fe

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "solver/block_matrix.hpp"
+#include "solver/linear/node_geometry.hpp"
 #include "solver/model.hpp"
 
 namespace msml::fe {
@@ -36,6 +37,11 @@ class LinearSystem {
   virtual LinearStatus factor(const BlockMatrix& A, const Mask& fixed) = 0;
   /// x at free unknowns so that |b - A x| <= tolerance |b| there; 0 at the others.
   virtual LinearStatus solve(const Vector& b, double tolerance, Vector& x) = 0;
+  /// The displacement (3 per node) that the next matrix belongs to; a help to solvers that keep what they made of an
+  /// earlier one.
+  virtual void place(const Vector& /*displacement*/) {}
+  /// Looks once more, where factor() has not, whether the matrix taken last is positive definite.
+  virtual LinearStatus probe() { return LinearStatus::done; }
   virtual std::size_t factor_bytes() const = 0;
   /// Negative eigenvalues of the matrix factorised last (Sylvester's law of inertia); 0 unless made by make_indefinite.
   virtual long negative_pivots() const { return 0; }
@@ -45,6 +51,8 @@ class LinearSystem {
 
 std::unique_ptr<LinearSystem> make_cholesky(int threads);
 std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner);
+/// Conjugate gradients preconditioned by multigrid.
+std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry);
 /// L D L^T with pivots of order one and two, by MUMPS in the order of METIS; counts negative pivots and refuses a
 /// singular matrix, but never an indefinite one.
 std::unique_ptr<LinearSystem> make_indefinite(int threads);
@@ -57,9 +65,9 @@ LinearStatus refine(const BlockMatrix& A, const std::vector<int>& unknown_of,
                     const std::function<bool(const Vector& residual, Vector& x)>& correct, const Vector& b,
                     double tolerance, Vector& x);
 
-/// The system that the settings ask for. `automatic` factorises up to 600,000 unknowns and iterates above: there the
-/// factor of a tet10 mesh would pass about 16 GB. Up to that size conjugate gradients that miss their tolerance give
-/// way to a factorisation, for good.
-std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, long unknowns);
+/// The system that the settings ask for. `automatic` factorises small systems, takes multigrid for larger solids, and
+/// never factorises more than 600,000 unknowns. Up to that size conjugate gradients that miss their tolerance give way
+/// to a factorisation, for good.
+std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, const NodeGeometry& geometry);
 
 }  // namespace msml::fe

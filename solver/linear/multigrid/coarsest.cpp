@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dense inverses of small matrices.
+#include "solver/linear/multigrid/coarsest.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace msml::fe {
+
+template <int B>
+bool Coarsest::set(const Blocks<double, B, B>& A) {
+  const int rows = A.sparsity.rows();
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(B * rows, B * rows);
+  for (int r = 0; r < rows; ++r)
+    for (int p = A.sparsity.offsets[static_cast<std::size_t>(r)];
+         p < A.sparsity.offsets[static_cast<std::size_t>(r) + 1]; ++p)
+      full.block<B, B>(B * r, B * A.sparsity.columns[static_cast<std::size_t>(p)]) =
+          Eigen::Map<const Eigen::Matrix<double, B, B>>(A.block(p));
+  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  if (factor.info() != Eigen::Success) return false;
+  inverse_ = factor.solve(Eigen::MatrixXd::Identity(full.rows(), full.cols())).cast<float>();
+  return inverse_.allFinite();
+}
+
+void Coarsest::solve(const std::vector<float>& b, std::vector<float>& x) const {
+  const Eigen::Map<const Eigen::VectorXf> right(b.data(), inverse_.cols());
+  Eigen::Map<Eigen::VectorXf>(x.data(), inverse_.rows()).noalias() = inverse_ * right;
+}
+
+template bool Coarsest::set(const Blocks<double, 3, 3>&);
+template bool Coarsest::set(const Blocks<double, 6, 6>&);
+
+}  // namespace msml::fe

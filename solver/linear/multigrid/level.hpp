@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One grid of a multigrid hierarchy: its matrix and its smoother.
+#pragma once
+#include "solver/linear/multigrid/blocks.hpp"
+
+namespace msml::fe {
+
+/// A matrix with B unknowns per node in single precision, smoothed by Chebyshev polynomials in the inverse of its
+/// diagonal blocks times itself (Adams, Brezina, Hu and Tuminaro 2003, doi 10.1016/S0021-9991(03)00194-3). Vectors have
+/// a few numbers more than B per node.
+template <int B>
+class Level {
+ public:
+  using Numbers = std::vector<float>;
+
+  /// Takes the matrix; false if a diagonal block is not positive definite.
+  bool set(const Blocks<double, B, B>& A);
+  int nodes() const { return matrix_.sparsity.rows(); }
+  Numbers vector() const { return Numbers(B * static_cast<std::size_t>(nodes()) + 8, 0.0f); }
+  /// x = S b: `degree` steps from zero.
+  void smooth_from_zero(const Numbers& b, Numbers& x);
+  /// x += S (b - A x).
+  void smooth(const Numbers& b, Numbers& x);
+  /// r = b - A x.
+  void residual(const Numbers& b, const Numbers& x, Numbers& r) const;
+  double radius() const { return radius_; }                        ///< largest eigenvalue of inverse(diagonal) A
+  const std::vector<double>& inverse() const { return inverse_; }  ///< B x B for each node, column by column
+  std::size_t bytes() const { return matrix_.bytes() + inverse_.size() * 12 + 4 * (direction_.size() * 2); }
+
+  int degree = 2;  ///< of the smoother
+
+ private:
+  void estimate_radius();
+  void step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next);
+
+  Blocks<float, B, B> matrix_;
+  std::vector<double> inverse_;
+  std::vector<float> inverse_single_;
+  double radius_ = 1;
+  Numbers direction_, other_;
+};
+
+}  // namespace msml::fe

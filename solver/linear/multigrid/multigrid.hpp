@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A multigrid cycle as preconditioner.
+#pragma once
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "solver/linear/linear_system.hpp"
+#include "solver/linear/multigrid/aggregates.hpp"
+#include "solver/linear/multigrid/coarsest.hpp"
+#include "solver/linear/multigrid/corners.hpp"
+#include "solver/linear/multigrid/level.hpp"
+
+namespace msml::fe {
+
+/// z = V r, one symmetric V cycle: quadratic elements, then linear ones on the same corners, then groups of nodes that
+/// reproduce rigid motions (smoothed aggregation, Vanek, Mandel and Brezina 1996), then a dense inverse. The set-up is
+/// in double precision, the cycle in single.
+class Multigrid {
+ public:
+  explicit Multigrid(NodeGeometry geometry) : geometry_(std::move(geometry)) {}
+  /// Takes the free part of a symmetric positive definite matrix. Grids are made anew when the mask changes; otherwise
+  /// only their matrices. not_positive_definite if that shows.
+  LinearStatus set(const BlockMatrix& A, const Mask& fixed);
+  /// 3 numbers per node in and out (r may be written to); both are zero at fixed unknowns.
+  void cycle(std::vector<float>& r, std::vector<float>& z);
+  std::size_t bytes() const;
+
+ private:
+  /// A grid of groups below a grid with B unknowns per node.
+  template <int B>
+  struct Step {
+    Blocks<double, B, 6> P;
+    Blocks<double, 6, B> restriction;
+    Blocks<float, B, 6> P_single;
+    Blocks<float, 6, B> restriction_single;
+  };
+  template <int B>
+  struct Grid {
+    Blocks<double, B, B> matrix;  ///< emptied after the set-up
+    Level<B> level;
+    std::vector<float> b, x, r;
+    bool solved = false;  ///< by coarsest_, instead of smoothing
+  };
+  void copy_free(const BlockMatrix& A, Blocks<double, 3, 3>& free) const;
+  bool set_matrices();
+  template <int B>
+  bool coarsen(Grid<B>& grid, const std::vector<char>& skip, std::optional<Step<B>>& step, Modes& modes);
+  template <int B>
+  bool settle(Grid<B>& grid);
+  template <int B>
+  void descend(Grid<B>& grid, const std::optional<Step<B>>& step, std::size_t below);
+  void prepare_modes(const std::vector<int>& nodes, const std::vector<char>& fixed, Modes& modes) const;
+
+  NodeGeometry geometry_;
+  Mask fixed_;
+  bool made_ = false, fresh_ = true;  ///< fresh_: the grids are being made
+  std::optional<Corners> corners_;
+  Grid<3> fine_, linear_;
+  std::optional<Step<3>> first_;  ///< from the linear grid (or the fine one, if it is linear) to the first of groups
+  std::vector<Grid<6>> groups_;
+  std::vector<std::optional<Step<6>>> steps_;  ///< steps_[k]: from groups_[k] to groups_[k + 1]
+  Coarsest coarsest_;
+};
+
+}  // namespace msml::fe

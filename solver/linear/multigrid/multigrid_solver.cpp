@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Conjugate gradients preconditioned by a multigrid cycle that turns with the body.
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "solver/linear/multigrid/multigrid.hpp"
+#include "solver/linear/multigrid/node_rotations.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr int limit_fresh = 400;  // iterations with grids of the matrix itself
+
+/// The grids are those of an earlier matrix for as long as they serve: set up anew where the iterations grow. Between
+/// two set-ups the cycle sees residuals turned back by the rotation of each node since the last one, so that the
+/// matrix of a body that turns without straining is met exactly.
+class MultigridSolver final : public LinearSystem {
+ public:
+  explicit MultigridSolver(const NodeGeometry& geometry) : geometry_(geometry), grids_(geometry) {}
+
+  void place(const Vector& displacement) override { displacement_ = displacement; }
+
+  LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
+    matrix_ = &A;
+    if (usable_ && !stale_ && fixed == fixed_) {
+      turn();
+      return LinearStatus::done;
+    }
+    fixed_ = fixed;
+    return set_up();
+  }
+
+  LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
+    b_ = right;
+    mask(b_);
+    x = Vector::Zero(b_.size());
+    const double target = tolerance * std::sqrt(dot(b_, b_));
+    double size = std::sqrt(dot(b_, b_)), before = std::numeric_limits<double>::infinity();
+    r_ = b_;
+    while (size > target) {
+      const int limit = fresh_ ? limit_fresh : 2 * usual_ + 10;
+      int taken = 0;
+      const LinearStatus status = iterate(target, limit, x, taken);
+      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = taken;
+      stale_ = !fresh_ && taken > usual_ + usual_ / 2 + 2;
+      if (status == LinearStatus::limit && fresh_) return status;
+      if (status == LinearStatus::not_positive_definite && fresh_) return status;
+      if (status != LinearStatus::done) {
+        const LinearStatus made = set_up();
+        if (made != LinearStatus::done) return made;
+      }
+      // The recurrence drifts from the true residual: measure it, and go on from there where needed.
+      multiply(*matrix_, x, r_);
+      r_ = b_ - r_;
+      mask(r_);
+      size = std::sqrt(dot(r_, r_));
+      if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
+      if (status == LinearStatus::done && size > target && size > 0.5 * before) return LinearStatus::limit;
+      before = size;
+    }
+    return LinearStatus::done;
+  }
+
+  /// A solution with a random right-hand side meets every direction of negative curvature.
+  LinearStatus probe() override {
+    Vector right = Vector::Zero(static_cast<Eigen::Index>(fixed_.size())), unused;
+    std::mt19937 random(1);
+    for (Eigen::Index k = 0; k < right.size(); ++k) right[k] = static_cast<double>(random() % 2001) / 1000 - 1;
+    return solve(right, 1e-6, unused);
+  }
+
+  std::size_t factor_bytes() const override { return grids_.bytes(); }
+
+ private:
+  LinearStatus set_up() {
+    usable_ = stale_ = false;
+    const LinearStatus status = grids_.set(*matrix_, fixed_);
+    if (status != LinearStatus::done) return status;
+    reference_ = geometry_.positions;
+    if (displacement_.size() == reference_.size()) reference_ += displacement_;
+    rotations_.clear();
+    usable_ = fresh_ = true;
+    usual_ = 0;
+    return status;
+  }
+
+  void turn() {
+    fresh_ = false;
+    rotations_.clear();
+    if (displacement_.size() != reference_.size()) return;
+    node_rotations(*matrix_->pattern, reference_, Vector(geometry_.positions + displacement_), fixed_, rotations_);
+  }
+
+  void mask(Vector& v) const {
+    for_rows(static_cast<int>(v.size()), 8192, [&](int k) {
+      if (fixed_[static_cast<std::size_t>(k)]) v[k] = 0;
+    });
+  }
+
+  /// z = R V R^T r with the rotations R of the nodes, in single precision on numbers of order one.
+  void precondition(double size) {
+    const auto count = static_cast<std::size_t>(r_.size());
+    single_r_.resize(count + 8, 0.0f);
+    single_z_.resize(count + 8, 0.0f);
+    const double scale = 1 / size;
+    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, true, r_.data(), scale, single_r_.data()); });
+    grids_.cycle(single_r_, single_z_);
+    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, false, single_z_.data(), size, z_.data()); });
+  }
+
+  template <class From, class To>
+  void turned(int n, bool back, const From* from, double scale, To* to) const {
+    const From* v = from + 3 * n;
+    To* out = to + 3 * n;
+    if (rotations_.empty()) {
+      for (int i = 0; i < 3; ++i) out[i] = static_cast<To>(scale * v[i]);
+      return;
+    }
+    const float* R = rotations_.data() + 9 * static_cast<std::size_t>(n);
+    for (int i = 0; i < 3; ++i) {
+      double sum = 0;
+      for (int j = 0; j < 3; ++j) sum += static_cast<double>(back ? R[3 * j + i] : R[3 * i + j]) * v[j];
+      out[i] = static_cast<To>(scale * sum);
+    }
+  }
+
+  /// Adds to x until the recurrence of the residual r_ says that it is below target.
+  LinearStatus iterate(double target, int limit, Vector& x, int& taken) {
+    z_.resize(r_.size());
+    p_ = Vector::Zero(r_.size());
+    double rho_before = 1, size = std::sqrt(dot(r_, r_));
+    while (taken < limit) {
+      precondition(size);
+      const double rho = dot(r_, z_);
+      if (!(rho > 0)) return LinearStatus::not_positive_definite;
+      p_ = z_ + (rho / rho_before) * p_;
+      rho_before = rho;
+      multiply(*matrix_, p_, q_);
+      mask(q_);
+      const double curvature = dot(p_, q_);
+      if (!(curvature > 0)) return LinearStatus::not_positive_definite;
+      const double alpha = rho / curvature;
+      x += alpha * p_;
+      r_ -= alpha * q_;
+      ++iterations, ++taken;
+      size = std::sqrt(dot(r_, r_));
+      if (size <= target) return LinearStatus::done;
+    }
+    return LinearStatus::limit;
+  }
+
+  NodeGeometry geometry_;
+  Multigrid grids_;
+  const BlockMatrix* matrix_ = nullptr;
+  Mask fixed_;
+  bool usable_ = false, fresh_ = false, stale_ = false;
+  int usual_ = 0;  ///< iterations of the first solve after the last set-up
+  Vector displacement_, reference_;
+  std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
+  Vector b_, r_, z_, p_, q_;
+  std::vector<float> single_r_, single_z_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry) {
+  return std::make_unique<MultigridSolver>(geometry);
+}
+
+}  // namespace msml::fe

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Multigrid: the same answers as a factorisation, in as many iterations on fine meshes as on coarse ones.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+
+Model solved_by(Model model, LinearSolver solver, double tolerance) {
+  model.settings.linear_solver = solver;
+  model.settings.preconditioner = Preconditioner::multigrid;
+  model.settings.linear_tolerance = tolerance;
+  return model;
+}
+
+Outcome run(const Model& model) {
+  Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_FALSE(outcome.cg_gave_up);
+  return outcome;
+}
+
+/// Largest difference of displacements beside the largest displacement.
+double difference(const State& a, const State& b) {
+  return (a.displacement - b.displacement).cwiseAbs().maxCoeff() / a.displacement.cwiseAbs().maxCoeff();
+}
+
+// The error may be larger than the residual by the condition number of the beam, about 1e5 here, and rarely is.
+TEST(Multigrid, AgreesWithAFactorisation) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+    const Model model = beam_model(3, kind, 0.3, Strain::small);
+    EXPECT_LT(difference(run(solved_by(model, LinearSolver::direct, 1e-12)).state,
+                         run(solved_by(model, LinearSolver::cg, 1e-10)).state),
+              1e-8);
+  }
+}
+
+// With a smoother alone the iterations double where the elements halve.
+TEST(Multigrid, IterationsDoNotGrowWithTheMesh) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+    std::vector<long> iterations;
+    for (const int n : {3, 6})
+      iterations.push_back(
+          run(solved_by(beam_model(n, kind, 0.3, Strain::small), LinearSolver::cg, 1e-8)).cg_iterations);
+    EXPECT_LE(iterations[1], iterations[0] + 6);
+    EXPECT_LE(iterations[1], 40);
+  }
+}
+
+// Displacements and supports in single directions: the grids must leave held unknowns alone.
+TEST(Multigrid, HoldsSingleComponents) {
+  Model model = beam_model(3, CellKind::tet10, 0.3, Strain::small);
+  model.steps[0].prescribed = {
+      fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }), true, false, true),
+      fix(points_where(*model.mesh, [](const Vec3& x) { return x[1] < 1e-9; }), false, true, false)};
+  EXPECT_LT(difference(run(solved_by(model, LinearSolver::direct, 1e-12)).state,
+                       run(solved_by(model, LinearSolver::cg, 1e-10)).state),
+            1e-8);
+}
+
+Model swinging(int steps) {
+  Model model = beam_model(2, CellKind::tet4, 0.3, Strain::corotated);
+  model.settings.integrator = Integrator::implicit_euler;
+  model.settings.newton_iterations = 1;
+  model.steps[0].dt = 1.0 / 30;
+  model.steps[0].count = steps;
+  return model;
+}
+
+// The grids of the first step serve them all: the cycle turns with the beam, which swings by more than 60 degrees.
+TEST(Multigrid, FollowsABodyThatTurns) {
+  const Model model = swinging(20);
+  const Outcome iterated = run(solved_by(model, LinearSolver::cg, 1e-9));
+  EXPECT_LT(difference(run(solved_by(model, LinearSolver::direct, 1e-12)).state, iterated.state), 1e-6);
+  EXPECT_LT(iterated.cg_iterations, 20 * 30);
+}
+
+TEST(Multigrid, DoesNotDependOnTheNumberOfThreads) {
+  Model model = solved_by(beam_model(4, CellKind::tet10, 0.3, Strain::small), LinearSolver::cg, 1e-8);
+  const Outcome one = run(model);
+  model.settings.threads = 2;
+  EXPECT_EQ((one.state.displacement - run(model).state.displacement).cwiseAbs().maxCoeff(), 0);
+}
+
+// A beam pressed past its buckling load: straight, it is in equilibrium, which is not stable.
+TEST(Multigrid, SeesThatAnEquilibriumIsUnstable) {
+  Model model = beam_model(3, CellKind::tet10, 0.3, Strain::corotated);
+  model.steps[0].gravity = Vec3::Zero();
+  const auto ends = points_where(*model.mesh, [](const Vec3& x) { return x[0] > 0.1 - 1e-9; });
+  model.steps[0].prescribed.push_back(fix(ends, true, true, true));
+  model.steps[0].prescribed.back().values = {Vec3(-0.03, 0, 0)};
+  model.settings.load_steps = 4;
+  const Outcome direct = solve(solved_by(model, LinearSolver::direct, 1e-10), {});
+  const Outcome iterated = solve(solved_by(model, LinearSolver::cg, 1e-10), {});
+  EXPECT_EQ(iterated.stop, direct.stop) << direct.diagnosis << "\n" << iterated.diagnosis;
+}
+
+}  // namespace
+}  // namespace msml::fe
