@@ -26,9 +26,10 @@ std::map<std::string, std::string> texts(const Json& json) {
 }
 
 Measure read_measure(const Json& json, const std::string& where) {
-  refuse_unknown(json, {"node", "pointer", "file", "column", "reduce", "where", "place"}, where);
-  return {json.value("node", ""),       json.value("pointer", ""), json.value("file", ""),  json.value("column", ""),
-          json.value("reduce", "last"), json.value("where", ""),   json.value("place", 0.0)};
+  refuse_unknown(json, {"node", "pointer", "file", "column", "reduce", "where", "whereFile", "place"}, where);
+  return {json.value("node", ""),      json.value("pointer", ""),    json.value("file", ""),
+          json.value("column", ""),    json.value("reduce", "last"), json.value("where", ""),
+          json.value("whereFile", ""), json.value("place", 0.0)};
 }
 
 Method read_method(const Json& shared, const Json& own, const std::string& where) {

@@ -18,8 +18,8 @@ struct Measure {
   std::string column;         ///< sums as "elastic+kinetic-external_work"; "reaction_z*": all that start so
   /// What is made of the column: last, largest (absolute), spread (largest less smallest, over the largest absolute),
   /// slope (of the last two rows over time), period (mean time between rises through zero), or at (value where `where`
-  /// passes `place`, linear between rows).
-  std::string reduce = "last", where;
+  /// passes `place`, by a parabola between rows; where_file: in another table with the same rows).
+  std::string reduce = "last", where, where_file;
   double place = 0;
 };
 

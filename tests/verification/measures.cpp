@@ -14,6 +14,12 @@ namespace {
 
 using Column = std::vector<double>;
 
+/// A file of numbers with a line of names.
+struct Table {
+  std::vector<std::string> names;
+  std::vector<Column> columns;
+};
+
 std::vector<std::string> cells(const std::string& line) {
   std::vector<std::string> found;
   std::istringstream stream(line);
@@ -74,15 +80,24 @@ double period(const Column& values, const Column& time) {
   return (rises.back() - rises.front()) / static_cast<double>(rises.size() - 1);
 }
 
+/// Value of the parabola through the three rows around the first passage.
 double value_at(const Column& values, const Column& where, double place) {
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if ((where[i - 1] - place) * (where[i] - place) <= 0 && where[i] != where[i - 1])
-      return values[i - 1] + (values[i] - values[i - 1]) * (place - where[i - 1]) / (where[i] - where[i - 1]);
-  throw std::runtime_error(fmt::format("the table does not reach {:g}", place));
+  std::size_t i = 1;
+  while (i < values.size() && ((where[i - 1] - place) * (where[i] - place) > 0 || where[i] == where[i - 1])) ++i;
+  if (i >= values.size()) throw std::runtime_error(fmt::format("the table does not reach {:g}", place));
+  const std::size_t first = i + 1 < values.size() ? i - 1 : i - std::min<std::size_t>(i, 2);
+  const std::size_t count = std::min<std::size_t>(3, values.size() - first);
+  double sum = 0;
+  for (std::size_t k = first; k < first + count; ++k) {
+    double weight = 1;
+    for (std::size_t m = first; m < first + count; ++m)
+      if (m != k) weight *= (place - where[m]) / (where[k] - where[m]);
+    sum += weight * values[k];
+  }
+  return sum;
 }
 
-}  // namespace
-
+/// Throws std::runtime_error on a file that cannot be read or has no row.
 Table read_table(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string line;
@@ -98,14 +113,20 @@ Table read_table(const std::filesystem::path& file) {
   return table;
 }
 
-double measured(const Measure& measure, const Table& table) {
+}  // namespace
+
+double measured(const Measure& measure, const std::filesystem::path& folder) {
+  const Table table = read_table(folder / measure.file);
   const Column values = column_of(table, measure.column);
   if (measure.reduce == "last") return values.back();
   if (measure.reduce == "largest") return largest(values);
   if (measure.reduce == "spread") return spread(values);
   if (measure.reduce == "slope") return slope(values, table.columns.front());
   if (measure.reduce == "period") return period(values, table.columns.front());
-  if (measure.reduce == "at") return value_at(values, column_of(table, measure.where), measure.place);
+  if (measure.reduce == "at") {
+    const Table other = measure.where_file.empty() ? table : read_table(folder / measure.where_file);
+    return value_at(values, column_of(other, measure.where), measure.place);
+  }
   throw std::runtime_error("reduce = '" + measure.reduce + "' is not known");
 }
 

@@ -5,16 +5,7 @@
 
 namespace msml::verification {
 
-/// A file of numbers with a line of names.
-struct Table {
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> columns;
-};
-
-/// Throws std::runtime_error on a file that cannot be read or has no row.
-Table read_table(const std::filesystem::path& file);
-
-/// What `measure` asks of the table. Throws std::runtime_error on a column that is not there.
-double measured(const Measure& measure, const Table& table);
+/// What `measure` asks of the tables in a folder. Throws std::runtime_error on a table or a column that is not there.
+double measured(const Measure& measure, const std::filesystem::path& folder);
 
 }  // namespace msml::verification

@@ -66,7 +66,7 @@ const Json* node_of(const Json& log, const std::string& id) {
 }
 
 double value_of(const Measure& measure, const Json& log, const fs::path& folder) {
-  if (!measure.file.empty()) return measured(measure, read_table(folder / measure.file));
+  if (!measure.file.empty()) return measured(measure, folder);
   const Json* node = node_of(log, measure.node);
   if (node == nullptr) throw std::runtime_error("no task is called " + measure.node);
   return node->at(Json::json_pointer(measure.pointer)).get<double>();
