@@ -7,6 +7,7 @@
 #include "msml/commands/commands.hpp"
 #include "msml/commands/help.hpp"
 #include "msml/commands/schema.hpp"
+#include "msml/commands/study.hpp"
 #include "msml/compile/grammar.hpp"
 #include "operators/registry.hpp"
 
@@ -36,8 +37,10 @@ struct CommandLine {
   CLI::App app{"msml: one XML scene of soft tissue in, a checked answer out.", "msml"};
   SceneArguments scene;
   CompareArguments compare;
+  msml::StudyArguments study;
+  msml::ChartArguments chart;
   std::string svg, name, category;
-  CLI::App *exec, *check, *show, *help, *list, *schema, *compare_files;
+  CLI::App *exec, *check, *show, *help, *list, *schema, *compare_files, *studies, *charts;
 
   CommandLine() {
     app.set_version_flag("--version", std::string("msml ") + MSML_VERSION);
@@ -49,31 +52,58 @@ struct CommandLine {
     help = app.add_subcommand("help", "explain an operator, material, constraint or any other tag");
     list = app.add_subcommand("list", "list operators, materials, constraints, …");
     schema = app.add_subcommand("schema", "print the XML schema (XSD) of the language");
+    studies = app.add_subcommand("study", "run the studies of a scene: tables, charts and a page for each");
+    charts = app.add_subcommand("chart", "draw columns of a study's results.csv");
     compare_files = app.add_subcommand("compare", "differences of the fields of two meshes");
-    for (CLI::App* each : {exec, check, show}) add_scene_options(each);
+    for (CLI::App* each : {exec, check, show}) add_scene_options(each, scene);
+    add_scene_options(studies, study.scene);
+    add_run_options(exec, scene);
+    add_run_options(studies, study.scene);
     add_exec_options();
+    add_study_options();
     add_other_options();
   }
 
-  void add_scene_options(CLI::App* command) {
-    command->add_option("scene", scene.scene, "the scene file (.msml.xml)")->required();
-    command->add_option("-o,--output", scene.output_folder, "folder for the results (default: the current one)");
-    command->add_option("--set", scene.set, "name=value: give a variable of the scene another value")
+  void add_scene_options(CLI::App* command, SceneArguments& to) {
+    command->add_option("scene", to.scene, "the scene file (.msml.xml)")->required();
+    command->add_option("-o,--output", to.output_folder, "folder for the results (default: the current one)");
+    command->add_option("--set", to.set, "name=value: give a variable of the scene another value")
         ->allow_extra_args(false);
-    command->add_option("--request", scene.requested, "id of a task to run although nothing needs it")
+    command->add_option("--request", to.requested, "id of a task to run although nothing needs it")
         ->allow_extra_args(false);
-    command->add_flag("--strict", scene.strict, "warnings about old scenes are errors");
-    command->add_flag("-v,--verbose", scene.verbose, "notes too");
-    command->add_flag("-q,--quiet", scene.quiet, "warnings and errors only");
+    command->add_flag("--strict", to.strict, "warnings about old scenes are errors");
+    command->add_flag("-v,--verbose", to.verbose, "notes too");
+    command->add_flag("-q,--quiet", to.quiet, "warnings and errors only");
+  }
+
+  static void add_run_options(CLI::App* command, SceneArguments& to) {
+    command->add_option("-j,--jobs", to.jobs, "nodes (of a study: runs) at once (default: processors)")
+        ->check(CLI::Range(1, 256));
+    command->add_option("--threads", to.threads, "threads inside a node (default: processors)")
+        ->check(CLI::Range(1, 256));
   }
 
   void add_exec_options() {
-    exec->add_option("-j,--jobs", scene.jobs, "nodes that run at once (default: processors)")
-        ->check(CLI::Range(1, 256));
-    exec->add_option("--threads", scene.threads, "threads inside a node (default: processors)")
-        ->check(CLI::Range(1, 256));
     exec->add_flag("-n,--dry-run", scene.dry_run, "print the plan, run nothing");
     exec->add_option("--log-json", scene.log_json, "write the report of the run to this file");
+  }
+
+  void add_study_options() {
+    studies->add_option("name", study.name, "id of the study (default: all of the scene)");
+    studies->add_flag("--html", study.html, "page and charts in one HTML file too");
+    studies->add_flag("--fresh", study.fresh, "run everything anew (default: go on where results.csv ends)");
+    studies->add_flag("--keep", study.keep, "keep the files of the runs");
+    charts->add_option("table", chart.table, "results.csv of a study")->required();
+    charts->add_option("--x", chart.x, "column along the horizontal axis")->required();
+    charts->add_option("--y", chart.y, "column along the vertical axis")->required();
+    charts->add_option("--group", chart.group, "column whose values make the curves (may be repeated)")
+        ->allow_extra_args(false);
+    charts->add_option("--scale", chart.scale, "loglog, linear, logx or logy")
+        ->check(CLI::IsMember({"loglog", "linear", "logx", "logy"}));
+    charts->add_option("--slope", chart.slopes, "slope to draw as a triangle (may be repeated)")
+        ->allow_extra_args(false);
+    charts->add_option("--title", chart.title, "above the chart");
+    charts->add_option("-o,--output", chart.output, "file without ending (default: Y_over_X beside the table)");
   }
 
   void add_other_options() {
@@ -107,6 +137,8 @@ struct CommandLine {
   int run(const Registry& registry) {
     if (exec->parsed()) return msml::exec_command(registry, scene);
     if (check->parsed()) return msml::check_command(registry, scene);
+    if (studies->parsed()) return msml::study_command(registry, study);
+    if (charts->parsed()) return msml::chart_command(chart);
     if (show->parsed()) return msml::show_command(registry, scene, svg);
     if (compare_files->parsed()) {
       compare.has_tolerance = compare_files->count("--tolerance") > 0;

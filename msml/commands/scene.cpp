@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // exec, check and show.
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <thread>
@@ -12,6 +9,7 @@
 #include "msml/core/atomic_file.hpp"
 #include "msml/plan/plan.hpp"
 #include "msml/run/interrupt.hpp"
+#include "msml/run/program.hpp"
 #include "msml/run/report.hpp"
 
 namespace msml {
@@ -35,18 +33,6 @@ int processors(int wanted) {
 
 void write_log(const SceneArguments& arguments, const std::string& json) {
   if (!arguments.log_json.empty()) write_whole(fs::path(arguments.log_json), json);
-}
-
-/// Runs a program with input and output files; its exit code, or -1 if it cannot be started.
-int run_program(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  int status = 0;
-  if (::posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return -1;
-  if (::waitpid(child, &status, 0) != child || !WIFEXITED(status)) return -1;
-  return WEXITSTATUS(status) == 127 ? -1 : WEXITSTATUS(status);
 }
 
 void write_svg(const std::string& dot, const fs::path& file) {

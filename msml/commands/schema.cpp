@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "msml/compile/grammar.hpp"
+
 namespace msml {
 namespace {
 
@@ -71,10 +73,10 @@ std::string attribute(const Slot& slot, bool verbatim) {
   return head + fmt::format(" type=\"{}\">\n", type) + doc + tail;
 }
 
-/// Attributes that old scenes carry without meaning.
+/// Attributes that old scenes carry without meaning, and the condition that any tag may have.
 std::string legacy_attributes(const Description& description) {
   std::string text;
-  std::set<std::string> names{"id", "name", "time", "forStep"};
+  std::set<std::string> names{"id", "name", "time", "forStep", when_attribute};
   if (description.tag() == "var") names.insert({"type", "format"});
   for (const std::string& name : names)
     if (description.find(name) < 0) text += fmt::format("      <xs:attribute name=\"{}\" type=\"xs:string\"/>\n", name);

@@ -28,7 +28,7 @@ void note_unused(Work& work) {
 /// Tags that only hold others: their attributes have no meaning, but a wrong one is a fault all the same.
 void check_holders(Work& work, const Tag& tag) {
   const auto& category = tag.description->category();
-  if (category == "operator" || category == "var" || category == "object") return;
+  if (category == "operator" || category == "var" || category == "object" || category == "studies") return;
   bind_attributes(work, tag);
   for (const Tag& inner : tag.children) check_holders(work, inner);
 }
@@ -54,6 +54,7 @@ void run_passes(Work& work, const Tag& root) {
   lower_objects(work, root);
   read_units(work, root);
   check_holders(work, root);
+  read_studies(work, root);
   note_unused(work);
   order_nodes(work);
   examine_nodes(work);
@@ -75,9 +76,10 @@ Compilation compile(const Document& document, const Registry& registry, const Co
   Compilation out;
   out.graph.scene = document.file;
   out.graph.folder = document.folder;
-  const Tag root = match_tags(registry, document, out.faults);
+  const Document chosen = choose_tags(document, options, out.faults);
+  const Tag root = match_tags(registry, chosen, out.faults);
   if (root.element) {
-    Work work{document, registry, options, out, {}, {}, {}, {}, {}};
+    Work work{chosen, registry, options, out, {}, {}, {}, {}, {}};
     run_passes(work, root);
   }
   sort_by_place(out.faults);

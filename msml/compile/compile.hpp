@@ -9,6 +9,7 @@
 #include "msml/compile/graph.hpp"
 #include "msml/core/registry.hpp"
 #include "msml/document/document.hpp"
+#include "msml/study/study.hpp"
 
 namespace msml {
 
@@ -21,6 +22,7 @@ struct CompileOptions {
 /// The graph, or every fault of the scene, sorted by line. The graph is complete only if there are no faults.
 struct Compilation {
   Graph graph;
+  std::vector<Study> studies;  ///< what `msml study` may run
   std::vector<Fault> faults, warnings, notes;
 };
 

@@ -3,9 +3,7 @@
 #include "msml/compile/work.hpp"
 
 namespace msml {
-namespace {
 
-/// The record of a binding as far as the scene's text says; what flows along edges is absent.
 Record literal_record(const Binding& binding) {
   Record record{.description = binding.description, .where = binding.where, .id = binding.id, .given = binding.given};
   for (const Source& source : binding.sources) {
@@ -15,8 +13,6 @@ Record literal_record(const Binding& binding) {
   for (const Binding& child : binding.children) record.children.push_back(literal_record(child));
   return record;
 }
-
-}  // namespace
 
 void examine_nodes(Work& work) {
   if (!work.out.faults.empty()) return;  // values may be missing

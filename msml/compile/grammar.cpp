@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "msml/study/study.hpp"
+
 namespace msml {
 namespace {
 
@@ -28,9 +30,7 @@ void add_top(Registry& registry) {
   add(registry, describe_variable(keys));
   add(registry, holder("scene", "The bodies that are simulated.", {{"object"}}));
   add(registry, holder("workflow", "The tasks: each an operator with its inputs and settings.", {{"operator"}}));
-  Description studies("studies", "studies", "Parameter studies of the scene.");
-  studies.not_available_yet("a scene is run once, with `msml exec`; vary it with --set");
-  add(registry, std::move(studies));
+  add_study_tags(registry);
 }
 
 void add_sets(Registry& registry) {

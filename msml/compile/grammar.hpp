@@ -21,6 +21,9 @@ struct EnvironmentKeys {
 /// The description of <environment> and its keys, always the same.
 Description describe_environment(EnvironmentKeys& keys);
 
+/// `when` may stand on any tag: `when="${kind} = tet10"`. See choose_tags.
+constexpr const char* when_attribute = "when";
+
 /// Attributes that old scenes carry without meaning: accepted with a note in verbose mode. `tag` is where it stands.
 bool is_legacy_attribute(const std::string& tag, const std::string& attribute);
 

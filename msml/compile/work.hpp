@@ -89,7 +89,18 @@ void bind_tasks(Work& work);
 void declare_objects(Work& work, const Tag& root);
 void lower_objects(Work& work, const Tag& root);
 
+// choose.cpp
+/// The document without the tags whose condition `when` does not hold: `A = B`, `A != B`, with alternatives `B | C`.
+/// The variables of the scene, with the values of CompileOptions::set, may stand in it.
+Document choose_tags(const Document& document, const CompileOptions& options, std::vector<Fault>& faults);
+
+// studies.cpp
+/// Reads <studies>; names of variables that do not exist, and whatever else makes no sense, are faults.
+void read_studies(Work& work, const Tag& root);
+
 // examine.cpp
+/// The record of a binding as far as the scene's text says; what flows along edges is absent.
+Record literal_record(const Binding& binding);
 /// Asks each operator what makes no sense in its record; only of a scene without faults so far.
 void examine_nodes(Work& work);
 

@@ -45,6 +45,14 @@ void mark(const Graph& graph, int node, std::vector<bool>& runs) {
   }
 }
 
+/// From the nodes that run: their order, and those that do not run.
+void finish(const Graph& graph, Plan& plan) {
+  for (const int node : graph.order)
+    if (plan.runs[static_cast<std::size_t>(node)]) plan.order.push_back(node);
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+    if (!plan.runs[i] && graph.nodes[i].kind != NodeKind::file) plan.skipped.push_back(static_cast<int>(i));
+}
+
 std::string inputs(const Graph& graph, const Node& node) {
   std::string text;
   for (const int need : node.needs) text += (text.empty() ? "" : ", ") + graph.nodes[static_cast<std::size_t>(need)].id;
@@ -60,16 +68,21 @@ std::string results(const Node& node) {
 
 }  // namespace
 
+Plan plan_for(const Graph& graph, const std::vector<int>& nodes) {
+  Plan plan;
+  plan.runs.assign(graph.nodes.size(), false);
+  for (const int node : nodes) mark(graph, node, plan.runs);
+  finish(graph, plan);
+  return plan;
+}
+
 Plan make_plan(const Graph& graph, const std::vector<std::string>& requested) {
   check_requests(graph, requested);
   Plan plan;
   plan.runs.assign(graph.nodes.size(), false);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i)
     if (wanted(graph.nodes[i], requested)) mark(graph, static_cast<int>(i), plan.runs);
-  for (const int node : graph.order)
-    if (plan.runs[static_cast<std::size_t>(node)]) plan.order.push_back(node);
-  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
-    if (!plan.runs[i] && graph.nodes[i].kind != NodeKind::file) plan.skipped.push_back(static_cast<int>(i));
+  finish(graph, plan);
   return plan;
 }
 

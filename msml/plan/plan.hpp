@@ -18,6 +18,9 @@ struct Plan {
 /// it. Throws Error for a requested id that does not exist.
 Plan make_plan(const Graph& graph, const std::vector<std::string>& requested = {});
 
+/// The plan for these nodes and what they need, and nothing else.
+Plan plan_for(const Graph& graph, const std::vector<int>& nodes);
+
 /// What exec --dry-run prints: the nodes in order with inputs and targets, then those that do not run.
 std::string describe(const Graph& graph, const Plan& plan);
 

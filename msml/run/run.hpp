@@ -26,6 +26,22 @@ struct NodeReport {
   std::vector<std::filesystem::path> files;  ///< written
 };
 
+/// What a node gave, kept for other runs.
+struct Shelved {
+  std::vector<Value> outputs;
+  NodeReport report;
+};
+
+/// Outputs of nodes that other runs have computed already. Calls come from any thread.
+class Shelf {
+ public:
+  virtual ~Shelf() = default;
+  /// Fills `into` if the node need not run.
+  virtual bool take(int node, Shelved& into) = 0;
+  /// Told of every node that has run, failed ones too.
+  virtual void put(int node, const Shelved& result) = 0;
+};
+
 /// Told what happens while nodes run; calls come from any thread.
 class Watcher {
  public:
@@ -40,8 +56,9 @@ class Watcher {
 
 struct RunOptions {
   std::filesystem::path output_folder = ".";
-  int jobs = 1;     ///< nodes at once
-  int threads = 1;  ///< threads inside a node
+  int jobs = 1;            ///< nodes at once
+  int threads = 1;         ///< threads inside a node
+  Shelf* shelf = nullptr;  ///< of results that runs share; null: every node runs
 };
 
 /// How a run ended: one report per node of the graph, and the first error if a node failed.

@@ -126,11 +126,6 @@ TEST(Structure, TagsNotAvailableYetAreRefused) {
             "s.xml:8: springs is not available yet: hold nodes with hold");
 }
 
-TEST(Structure, StudiesAreNotAvailableYet) {
-  EXPECT_EQ(faults_of("<msml>\n<studies><study id=\"s\"/></studies></msml>"),
-            "s.xml:2: studies is not available yet: a scene is run once, with `msml exec`; vary it with --set");
-}
-
 TEST(Structure, OldAttributesWithoutMeaningAreNotedOnly) {
   const Compilation result = tiny::compiled(
       "<msml xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" xsi:schemaLocation=\"a b\"><variables>\n"

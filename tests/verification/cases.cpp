@@ -25,12 +25,21 @@ std::map<std::string, std::string> texts(const Json& json) {
   return map;
 }
 
+Measure read_measure(const Json& json, const std::string& where) {
+  refuse_unknown(json, {"node", "pointer", "file", "column", "reduce", "where", "whereFile", "place"}, where);
+  return {json.value("node", ""),      json.value("pointer", ""),    json.value("file", ""),
+          json.value("column", ""),    json.value("reduce", "last"), json.value("where", ""),
+          json.value("whereFile", ""), json.value("place", 0.0)};
+}
+
 Method read_method(const Json& shared, const Json& own, const std::string& where) {
-  refuse_unknown(own, {"name", "set", "replace", "vary", "values", "expect", "order", "limit", "above", "exit", "says"},
+  refuse_unknown(own,
+                 {"name", "measure", "set", "replace", "vary", "values", "expect", "order", "self", "limit", "above",
+                  "exit", "says"},
                  where);
   Json json = shared;
   for (const auto& [key, value] : own.items())
-    if (value.is_object() && json.contains(key))
+    if (key != "measure" && value.is_object() && json.contains(key))
       json[key].update(value);
     else
       json[key] = value;
@@ -40,9 +49,15 @@ Method read_method(const Json& shared, const Json& own, const std::string& where
   if (json.contains("replace")) method.replace = texts(json["replace"]);
   method.vary = json.value("vary", "");
   if (json.contains("values"))
-    for (const Json& value : json["values"]) method.values.push_back(text(value));
+    for (const Json& value : json["values"])
+      method.values.push_back(value.is_object() ? texts(value)
+                                                : std::map<std::string, std::string>{{method.vary, text(value)}});
+  if (method.vary.empty() != method.values.empty())
+    throw std::runtime_error(fmt::format("{}: vary and values go together", where));
   if (json.contains("expect")) method.expect = json["expect"].get<double>();
   if (json.contains("order")) method.order = json["order"].get<double>();
+  method.self = json.value("self", false);
+  if (json.contains("measure")) method.measure = read_measure(json["measure"], where);
   method.limit = json.value("limit", 0.0);
   method.above = json.value("above", 0.0);
   method.exit_code = json.value("exit", 0);
@@ -55,18 +70,13 @@ Case read_case(const Json& json) {
   out.name = json.at("case").get<std::string>();
   refuse_unknown(json,
                  {"case", "scene", "source", "measure", "smoke", "methods", "set", "replace", "vary", "values",
-                  "expect", "order", "limit", "above", "exit", "says"},
+                  "expect", "order", "self", "limit", "above", "exit", "says"},
                  out.name);
   out.scene = json.at("scene").get<std::string>();
   out.source = json.at("source").get<std::string>();
   out.smoke = json.value("smoke", false);
-  if (json.contains("measure")) {
-    const Json& measure = json["measure"];
-    out.measure = {measure.value("node", ""), measure.value("pointer", ""), measure.value("file", ""),
-                   measure.value("column", "")};
-  }
   Json shared = json;
-  for (const char* key : {"case", "scene", "source", "measure", "smoke", "methods"}) shared.erase(key);
+  for (const char* key : {"case", "scene", "source", "smoke", "methods"}) shared.erase(key);
   for (const Json& method : json.at("methods")) out.methods.push_back(read_method(shared, method, out.name));
   return out;
 }

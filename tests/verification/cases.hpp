@@ -11,10 +11,16 @@
 namespace msml::verification {
 
 /// Where a number is read after a run: a JSON pointer into the report of the node `node` (such as "/check/volumeChange"
-/// or "/values/error"), or a column of a probe's file in its last row.
+/// or "/values/error"), or columns of a table that the run wrote.
 struct Measure {
   std::string node, pointer;  ///< of the report
-  std::string file, column;   ///< or of a table
+  std::string file;           ///< or of a table
+  std::string column;         ///< sums as "elastic+kinetic-external_work"; "reaction_z*": all that start so
+  /// What is made of the column: last, largest (absolute), spread (largest less smallest, over the largest absolute),
+  /// slope (of the last two rows over time), period (mean time between rises through zero), or at (value where `where`
+  /// passes `place`, by a parabola between rows; where_file: in another table with the same rows).
+  std::string reduce = "last", where, where_file;
+  double place = 0;
 };
 
 /// One way to compute a case: variables to set and tags to exchange in the scene. Where `vary` names a variable, the
@@ -23,19 +29,20 @@ struct Method {
   std::string name;
   std::map<std::string, std::string> set, replace;
   std::string vary;
-  std::vector<std::string> values;
+  std::vector<std::map<std::string, std::string>> values;  ///< of `vary`, and of what goes with it
   std::optional<double> expect;  ///< number that the measure must come to; absent: the measure is an error, to be zero
   std::optional<double> order;   ///< of convergence in 1/value, within 0.15 (more is no fault), in the last pair
+  bool self = false;             ///< the error of a run is its difference from the one before; the first has none
   double limit = 0;              ///< of the last run's error: relative to `expect` where that is not zero
   double above = 0;              ///< the error must be at least this: where theory says that a method fails
   int exit_code = 0;             ///< what the program must end with
-  std::string says;              ///< words that its messages must hold
+  Measure measure;
+  std::string says;  ///< words that its messages must hold
 };
 
 /// A problem with its reference.
 struct Case {
   std::string name, scene, source;
-  Measure measure;
   bool smoke = false;
   std::vector<Method> methods;
 };

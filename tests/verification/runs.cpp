@@ -10,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/verification/measures.hpp"
+
 namespace msml::verification {
 namespace {
 
@@ -57,29 +59,14 @@ int execute(const Program& program, const fs::path& scene, const std::map<std::s
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-double last_of_column(const fs::path& file, const std::string& column) {
-  std::ifstream stream(file);
-  std::string header, row, last, cell;
-  if (!std::getline(stream, header)) throw std::runtime_error("cannot read " + file.filename().string());
-  while (std::getline(stream, row))
-    if (!row.empty()) last = row;
-  std::istringstream names(header), cells(last);
-  while (std::getline(names, cell, ',')) {
-    std::string number;
-    std::getline(cells, number, ',');
-    if (cell == column) return std::stod(number);
-  }
-  throw std::runtime_error(fmt::format("{} has no column {}", file.filename().string(), column));
-}
-
 const Json* node_of(const Json& log, const std::string& id) {
   for (const Json& node : log.at("nodes"))
     if (node.at("id") == id) return &node;
   return nullptr;
 }
 
-double measured(const Measure& measure, const Json& log, const fs::path& folder) {
-  if (!measure.file.empty()) return last_of_column(folder / measure.file, measure.column);
+double value_of(const Measure& measure, const Json& log, const fs::path& folder) {
+  if (!measure.file.empty()) return measured(measure, folder);
   const Json* node = node_of(log, measure.node);
   if (node == nullptr) throw std::runtime_error("no task is called " + measure.node);
   return node->at(Json::json_pointer(measure.pointer)).get<double>();
@@ -109,16 +96,17 @@ std::string last_line(const std::string& text) {
 void judge(const Method& method, Row& row) {
   if (method.expect)
     row.error = std::abs(*row.value - *method.expect) / (*method.expect != 0 ? std::abs(*method.expect) : 1);
-  if (!method.expect) row.error = std::abs(*row.value);
-  row.pass = std::isfinite(*row.error);
+  if (!method.expect && !method.self) row.error = std::abs(*row.value);
+  row.pass = std::isfinite(*row.value);
 }
 
-Row run_once(const Program& program, const Case& each, const Method& method, const std::string& value) {
+Row run_once(const Program& program, const Case& each, const Method& method,
+             const std::map<std::string, std::string>& values) {
   Row row{.name = each.name, .method = method.name, .source = each.source, .expect = method.expect};
   std::map<std::string, std::string> set = method.set;
   if (!method.vary.empty()) {
-    set[method.vary] = value;
-    row.method += fmt::format("{}{} = {}", method.name.empty() ? "" : ", ", method.vary, value);
+    for (const auto& [name, value] : values) set[name] = value;
+    row.method += fmt::format("{}{} = {}", method.name.empty() ? "" : ", ", method.vary, values.at(method.vary));
   }
   const fs::path folder = program.results / file_name(each.name + " " + row.method);
   fs::remove_all(folder);
@@ -133,11 +121,11 @@ Row run_once(const Program& program, const Case& each, const Method& method, con
     row.unknowns = unknowns_of(log);
     row.seconds = simulation_seconds(log);
     if (!method.says.empty()) row.remark = fmt::format("says '{}'", method.says);
-    if (code != 0 || (each.measure.node.empty() && each.measure.file.empty())) {
+    if (code != 0 || (method.measure.node.empty() && method.measure.file.empty())) {
       row.pass = true;
       return row;
     }
-    row.value = measured(each.measure, log, folder);
+    row.value = value_of(method.measure, log, folder);
     judge(method, row);
   } catch (const std::exception& error) {
     row.remark = error.what();
@@ -149,7 +137,8 @@ Row run_once(const Program& program, const Case& each, const Method& method, con
 void judge_order(const Method& method, std::vector<Row>& rows) {
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (!rows[i].error || !rows[i - 1].error) continue;
-    const double ratio = std::abs(std::log(std::stod(method.values[i]) / std::stod(method.values[i - 1])));
+    const double ratio = std::abs(
+        std::log(std::stod(method.values[i].at(method.vary)) / std::stod(method.values[i - 1].at(method.vary))));
     rows[i].order = std::log(*rows[i - 1].error / *rows[i].error) / ratio;
   }
   Row& last = rows.back();
@@ -164,8 +153,10 @@ void judge_order(const Method& method, std::vector<Row>& rows) {
 
 std::vector<Row> run_method(const Program& program, const Case& each, const Method& method) {
   std::vector<Row> rows;
-  for (const std::string& value : method.vary.empty() ? std::vector<std::string>{""} : method.values)
-    rows.push_back(run_once(program, each, method, value));
+  if (method.vary.empty()) rows.push_back(run_once(program, each, method, {}));
+  for (const auto& values : method.values) rows.push_back(run_once(program, each, method, values));
+  for (std::size_t i = 1; method.self && i < rows.size(); ++i)
+    if (rows[i].value && rows[i - 1].value) rows[i].error = std::abs(*rows[i].value - *rows[i - 1].value);
   Row& last = rows.back();
   if (last.pass && last.error) {
     last.limit = method.limit;

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// study: runs, tables, charts, pages. chart: one more picture of a table.
+#include "msml/commands/study.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "msml/core/atomic_file.hpp"
+#include "msml/run/interrupt.hpp"
+#include "msml/study/chart.hpp"
+#include "msml/study/page.hpp"
+#include "msml/study/report.hpp"
+#include "msml/study/runner.hpp"
+
+namespace msml {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+const Study& find_study(const std::vector<Study>& studies, const std::string& name, const std::string& scene) {
+  std::vector<std::string> names;
+  for (const Study& study : studies) {
+    if (study.id == name) return study;
+    names.push_back(study.id);
+  }
+  throw Error(fmt::format("no study is called {}{}", shortened(name), did_you_mean(name, names)), {scene, 0});
+}
+
+/// One line for a run that is over: "[3/24] tet10, 8: done, error_RMS 0.0123, time_total 0.21".
+void print_row(const Study& study, const Table& table, std::size_t row) {
+  std::string line = fmt::format("[{}/{}] {}: {}", row + 1, table.rows.size(), table.words(row, study.variables()),
+                                 table.text(row, "status"));
+  for (const Measure& m : study.measures)
+    if (const double value = table.number(row, m.id); std::isfinite(value))
+      line += fmt::format(", {} {:.4g}{}{}", m.id, value, m.unit == "s" ? " " : "", m.unit == "s" ? "s" : "");
+  if (!table.done(row)) line += ": " + table.text(row, "reason");
+  std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+Table earlier(const fs::path& file, bool fresh) { return fresh || !fs::exists(file) ? Table{} : read_csv(file); }
+
+void draw_charts(const Study& study, const Table& table, const fs::path& folder) {
+  ChartStyle style{column_units(study), study.combine != Combine::latin_hypercube};
+  for (const Chart& chart : study.charts) {
+    try {
+      if (const std::string problem = draw(table, chart, style, folder); !problem.empty())
+        std::fprintf(stderr, "%s\n", problem.c_str());
+    } catch (const Error& error) {
+      std::fprintf(stderr, "%s: %s\n", chart.where.str().c_str(), error.what());
+    }
+  }
+}
+
+class StudyRunner {
+ public:
+  StudyRunner(const Registry& registry, const StudyArguments& arguments)
+      : registry_(registry), arguments_(arguments), document_(read_document(arguments.scene.scene, faults_)) {
+    compile_options_ = {settings(arguments.scene.set), arguments.scene.output_folder, arguments.scene.strict};
+    compilation_ = compile_file(arguments.scene.scene, registry, compile_options_);
+  }
+
+  int run() {
+    const Verbosity verbosity = arguments_.scene.quiet     ? Verbosity::quiet
+                                : arguments_.scene.verbose ? Verbosity::verbose
+                                                           : Verbosity::normal;
+    if (!print_messages(compilation_, verbosity)) return static_cast<int>(Failure::input);
+    if (compilation_.studies.empty()) throw Error("the scene has no <studies>", {arguments_.scene.scene, 0});
+    if (!arguments_.name.empty()) find_study(compilation_.studies, arguments_.name, arguments_.scene.scene);
+    watch_for_interrupts();
+    for (const Study& study : compilation_.studies)
+      if (arguments_.name.empty() || study.id == arguments_.name) run_one(study);
+    return 0;
+  }
+
+ private:
+  int processors(int wanted) const {
+    return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  }
+
+  void run_one(const Study& study) {
+    const Clock::time_point start = Clock::now();
+    StudyOptions options{.folder = fs::path(arguments_.scene.output_folder) / study.id,
+                         .jobs = processors(arguments_.scene.jobs),
+                         .threads = processors(arguments_.scene.threads),
+                         .keep = arguments_.keep};
+    if (!study.timed() && arguments_.scene.threads == 0) options.threads = 1;  // several runs share the processors
+    const auto runs = prepare_runs(document_, registry_, compile_options_, study);
+    if (!arguments_.scene.quiet) std::fprintf(stderr, "study %s: %zu runs\n", study.id.c_str(), runs.size());
+    Sharing sharing;
+    const Table table = run_study(
+        study, runs, registry_, options, earlier(options.folder / "results.csv", arguments_.fresh),
+        [&](const Table& so_far, std::size_t row) {
+          if (!arguments_.scene.quiet) print_row(study, so_far, row);
+        },
+        sharing);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    write_whole(options.folder / "results.json",
+                study_json(study, table, arguments_.scene.scene, compilation_.graph.units, options, sharing, seconds));
+    draw_charts(study, table, options.folder);
+    write_page(study, table, options);
+    if (!arguments_.scene.quiet)
+      std::fprintf(stderr, "study %s: %s, %zu nodes computed, %zu taken from other runs; see %s\n", study.id.c_str(),
+                   duration(seconds).c_str(), sharing.computed, sharing.shared,
+                   (options.folder / "page.md").string().c_str());
+  }
+
+  void write_page(const Study& study, const Table& table, const StudyOptions& options) const {
+    const std::string about = fmt::format("Made by msml {} from {}, on {}, {} thread{}; times are medians of {}.",
+                                          MSML_VERSION, fs::path(arguments_.scene.scene).filename().string(), machine(),
+                                          options.threads, options.threads == 1 ? "" : "s", study.repetitions());
+    const Page page = make_page(study, table, about);
+    write_whole(options.folder / "page.md", to_markdown(page));
+    if (arguments_.html) write_whole(options.folder / "page.html", to_html(page, options.folder));
+  }
+
+  const Registry& registry_;
+  const StudyArguments& arguments_;
+  std::vector<Fault> faults_;
+  Document document_;
+  CompileOptions compile_options_;
+  Compilation compilation_;
+};
+
+}  // namespace
+
+int study_command(const Registry& registry, const StudyArguments& arguments) {
+  return StudyRunner(registry, arguments).run();
+}
+
+int chart_command(const ChartArguments& arguments) {
+  const Table table = read_csv(arguments.table);
+  const auto check = [&](const std::string& column) {
+    if (table.find(column) < 0)
+      throw Error(fmt::format("{} has no column {}{}", arguments.table, column, did_you_mean(column, table.columns)));
+  };
+  check(arguments.x);
+  check(arguments.y);
+  for (const std::string& column : arguments.group) check(column);
+  const fs::path output = arguments.output.empty()
+                              ? fs::path(arguments.table).parent_path() / (arguments.y + "_over_" + arguments.x)
+                              : fs::path(arguments.output);
+  const std::string& s = arguments.scale;
+  const Chart chart{.id = output.filename().replace_extension().string(),
+                    .title = arguments.title,
+                    .x = arguments.x,
+                    .y = arguments.y,
+                    .group = arguments.group,
+                    .axes = {s == "loglog" || s == "logx", s == "loglog" || s == "logy"},
+                    .slopes = arguments.slopes,
+                    .where = {}};
+  if (const std::string problem = draw(table, chart, {}, output.parent_path()); !problem.empty()) throw Error(problem);
+  return 0;
+}
+
+}  // namespace msml

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// study and chart.
+#pragma once
+#include "msml/commands/commands.hpp"
+
+namespace msml {
+
+/// What stands on the command line of study.
+struct StudyArguments {
+  SceneArguments scene;  ///< the output folder holds one folder per study
+  std::string name;      ///< the study to run; "": all of the scene
+  bool html = false, fresh = false, keep = false;
+};
+
+/// Runs the studies of a scene and writes their tables, charts and pages. 0, or 2 for a scene with faults. A run
+/// without a result does not make the command fail: it is a row of the table.
+int study_command(const Registry& registry, const StudyArguments& arguments);
+
+/// What stands on the command line of chart.
+struct ChartArguments {
+  std::string table;  ///< results.csv
+  std::string x, y, scale = "loglog", title, output;
+  std::vector<std::string> group;
+  std::vector<double> slopes;
+};
+
+/// Draws one chart of a table. 0.
+int chart_command(const ChartArguments& arguments);
+
+}  // namespace msml

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// <studies> -> plain structs.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "msml/compile/literal.hpp"
+#include "msml/compile/work.hpp"
+#include "msml/study/expand.hpp"
+
+namespace msml {
+namespace {
+
+void check_variable(Work& work, const std::string& name, const Location& where) {
+  const auto found = work.scope.find(name);
+  if (found != work.scope.end() && found->second.kind == Named::Kind::variable) {
+    found->second.variable.used = true;
+    return;
+  }
+  std::vector<std::string> names;
+  for (const auto& [known, named] : work.scope)
+    if (named.kind == Named::Kind::variable) names.push_back(known);
+  work.fault(where, fmt::format("the scene has no variable {}{}", quoted_value(name), did_you_mean(name, names)));
+}
+
+/// True if a task, an object or a scene output has this name; a task's output may follow a dot.
+bool is_node(const Work& work, const std::string& name) {
+  const auto& nodes = work.out.graph.nodes;
+  const std::string id = name.substr(0, name.find('.'));
+  return std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) {
+    return node.id == id || std::find(node.results.begin(), node.results.end(), id) != node.results.end();
+  });
+}
+
+void check_measure(Work& work, const Study& study, const Measure& measure) {
+  if (!measure.of.empty() && !is_node(work, measure.of))
+    work.fault(measure.where, fmt::format("measure '{}': the scene has no task or output {}", quoted_value(measure.id),
+                                          quoted_value(measure.of)));
+  static const std::set<std::string> times{"total", "simulation", "step", "setup", "assembly", "linear"};
+  if (measure.quantity == Quantity::time && !times.contains(measure.what) && !is_node(work, measure.what))
+    work.fault(measure.where, fmt::format("time = {} is none of total, simulation, step, setup, assembly, linear, and "
+                                          "no task has this id",
+                                          quoted_value(measure.what)));
+  if (measure.against_truth && !study.truth) work.fault(measure.where, "an error needs a <reference> in the study");
+}
+
+void check_chart(Work& work, const Study& study, const Chart& chart) {
+  std::vector<std::string> columns = study.variables();
+  const std::vector<std::string> variables = columns;
+  for (const Measure& measure : study.measures) columns.push_back(measure.id);
+  columns.push_back("unknowns");
+  const auto known = [&](const std::string& name, const std::vector<std::string>& names, const char* what) {
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      work.fault(chart.where, fmt::format("{} = {} is no {} of the study{}; it has {}", what, quoted_value(name),
+                                          &names == &variables ? "variable" : "column", did_you_mean(name, names),
+                                          fmt::join(names, ", ")));
+  };
+  known(chart.x, columns, "x");
+  known(chart.y, columns, "y");
+  for (const std::string& name : chart.group) known(name, variables, "group");
+}
+
+void check_study(Work& work, const Study& study, const FaultSink& fault) {
+  std::set<std::string> columns{"unknowns", "status", "reason", "run", "key"};
+  for (const Vary& vary : study.vary)
+    for (const std::string& name : vary.variables) {
+      check_variable(work, name, vary.where);
+      if (!columns.insert(name).second)
+        fault(vary.where, fmt::format("{} varies twice, or is the name of another column", quoted_value(name)));
+    }
+  if (study.truth)
+    for (const auto& [name, value] : study.truth->set) check_variable(work, name, study.truth->where);
+  for (const Measure& measure : study.measures) {
+    if (!columns.insert(measure.id).second)
+      fault(measure.where, fmt::format("two columns are called {}: give one an id", quoted_value(measure.id)));
+    check_measure(work, study, measure);
+  }
+  for (const Chart& chart : study.charts) check_chart(work, study, chart);
+  expand(study, fault);
+}
+
+}  // namespace
+
+void read_studies(Work& work, const Tag& root) {
+  const Tag* studies = root.only("studies");
+  if (!studies) return;
+  bind_attributes(work, *studies);
+  const FaultSink fault = [&](const Location& where, const std::string& what) { work.fault(where, what); };
+  std::map<std::string, Location> ids;
+  for (const Tag& tag : studies->children) {
+    const std::size_t before = work.out.faults.size();
+    const Record record = literal_record(bind_tree(work, tag));
+    if (work.out.faults.size() > before) continue;  // values may be missing
+    Study study = make_study(record, fault);
+    if (study.id.find_first_of("/${}. \\*\"'<>|") != std::string::npos || study.id.empty())
+      work.fault(study.where, fmt::format("id = '{}' names a folder: no blanks, dots, slashes, quotes, braces or *",
+                                          quoted_value(study.id)));
+    if (const auto [first, fresh] = ids.insert({study.id, study.where}); !fresh)
+      work.fault(study.where, fmt::format("two studies are called {}: the other one is at line {}",
+                                          quoted_value(study.id), first->second.line));
+    if (work.out.faults.size() > before) continue;
+    check_study(work, study, fault);
+    work.out.studies.push_back(std::move(study));
+  }
+}
+
+}  // namespace msml

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a study found, in words and tables.
+#include "msml/study/page.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "msml/study/fit.hpp"
+
+namespace msml {
+namespace {
+
+using Cells = std::vector<std::vector<std::string>>;
+
+constexpr double levels[] = {0.1, 0.05, 0.01, 0.001};
+
+std::string digits(double x) { return fmt::format("{:.4g}", x); }
+std::string percent(double x) { return fmt::format("{:.4g} %", 100 * x); }
+
+class Writer {
+ public:
+  Writer(const Study& study, const Table& table) : study_(study), table_(table) {}
+
+  Page write(const std::string& about) {
+    heading(study_.title.empty() ? study_.id : study_.title);
+    paragraph(about + " " + outcome());
+    for (const Chart& chart : study_.charts) add({Block::Kind::picture, chart.id, {}});
+    slopes();
+    for (const Measure& m : study_.measures)
+      if (m.against_truth && m.relative) {
+        front(m);
+        cheapest(m);
+        ratios(m);
+      }
+    if (study_.combine == Combine::latin_hypercube) spread();
+    failures();
+    heading("All runs");
+    Cells cells{{table_.columns.begin(), table_.columns.end() - 2}};
+    for (const auto& row : table_.rows) cells.emplace_back(row.begin(), row.end() - 2);
+    table(std::move(cells));
+    return std::move(page_);
+  }
+
+ private:
+  void add(Block block) { page_.push_back(std::move(block)); }
+  void heading(const std::string& text) { add({Block::Kind::heading, text, {}}); }
+  void paragraph(const std::string& text) { add({Block::Kind::paragraph, text, {}}); }
+  void table(Cells cells) { add({Block::Kind::table, "", std::move(cells)}); }
+
+  std::string outcome() const {
+    std::map<std::string, int> counts;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) ++counts[table_.text(row, "status")];
+    std::string text = fmt::format("{} runs:", table_.rows.size());
+    for (const auto& [status, count] : counts) text += fmt::format(" {} {},", count, status);
+    text.back() = '.';
+    return text;
+  }
+
+  void slopes() {
+    Cells cells{{"y", "over x", "curve", "slope", "95 % confidence", "runs"}};
+    for (const Chart& chart : study_.charts) {
+      if (!chart.axes.log_x || !chart.axes.log_y) continue;
+      for (const Curve& curve : curves(table_, chart.x, chart.y, chart.group, true))
+        if (const auto fit = fitted_slope(curve.points))
+          cells.push_back({chart.y, chart.x, curve.name, fmt::format("{:.2f}", fit->slope),
+                           std::isfinite(fit->half_width) ? fmt::format("± {:.2f}", fit->half_width) : "two runs only",
+                           std::to_string(fit->count)});
+    }
+    if (cells.size() == 1) return;
+    heading("Fitted slopes");
+    paragraph(
+        "Least squares of log y over log x. Against unknowns in three dimensions, order p of the mesh size is a "
+        "slope of -p/3.");
+    table(std::move(cells));
+  }
+
+  /// The measure of time that accuracy is weighed against, or null.
+  const Measure* time() const {
+    for (const Measure& m : study_.measures)
+      if (m.quantity == Quantity::time) return &m;
+    return nullptr;
+  }
+
+  void front(const Measure& error) {
+    if (!time()) return;
+    Cells cells{{fmt::format("{} [s]", time()->id), error.id}};
+    for (const std::string& name : study_.variables()) cells.front().push_back(name);
+    for (const Curve& curve : curves(table_, time()->id, error.id, {}, true))
+      for (const Point& point : pareto_front(curve.points)) {
+        cells.push_back({digits(point.x), percent(point.y)});
+        for (const std::string& name : study_.variables()) cells.back().push_back(table_.text(point.row, name));
+      }
+    if (cells.size() == 1) return;
+    heading(fmt::format("Pareto front: {} against {}", error.id, time()->id));
+    paragraph("No other run is both faster and more accurate than these.");
+    table(std::move(cells));
+  }
+
+  void cheapest(const Measure& error) {
+    const std::string cost = time() ? time()->id : "unknowns";
+    Cells cells{{"error at most", cost, error.id}};
+    for (const std::string& name : study_.variables()) cells.front().push_back(name);
+    for (const double level : levels) {
+      const Point* best = nullptr;
+      const auto all = curves(table_, cost, error.id, {}, true);
+      for (const Curve& curve : all)
+        for (const Point& point : curve.points)
+          if (point.y <= level && (!best || point.x < best->x)) best = &point;
+      cells.push_back({percent(level), best ? digits(best->x) : "not reached", best ? percent(best->y) : ""});
+      for (const std::string& name : study_.variables())
+        cells.back().push_back(best ? table_.text(best->row, name) : "");
+    }
+    heading(fmt::format("Cheapest setting: {}", error.id));
+    table(std::move(cells));
+  }
+
+  /// Methods: the groups of the first chart of this error.
+  std::vector<std::string> methods(const Measure& error) const {
+    for (const Chart& chart : study_.charts)
+      if (chart.y == error.id && !chart.group.empty()) return chart.group;
+    return {};
+  }
+
+  void ratios(const Measure& error) {
+    const auto group = methods(error);
+    if (group.empty()) return;
+    std::vector<std::string> costs{"unknowns"};
+    if (time()) costs.push_back(time()->id);
+    Cells cells{{"error", "method"}};
+    for (const std::string& cost : costs) cells.front().insert(cells.front().end(), {cost, "to the best"});
+    for (const double level : levels) {
+      Cells rows;
+      for (const std::string& name : distinct(table_, group)) rows.push_back({percent(level), name});
+      bool any = false;
+      for (const std::string& cost : costs) any = add_costs(error, group, cost, level, rows) || any;
+      if (any) cells.insert(cells.end(), rows.begin(), rows.end());
+    }
+    if (cells.size() == 1) return;
+    heading(fmt::format("What each method needs for the same {}", error.id));
+    paragraph(
+        "Between runs by straight lines in the logarithms; empty where a method's runs do not bracket the error.");
+    table(std::move(cells));
+  }
+
+  bool add_costs(const Measure& error, const std::vector<std::string>& group, const std::string& cost, double level,
+                 Cells& rows) const {
+    std::map<std::string, double> needed;
+    double best = 0;
+    for (const Curve& curve : curves(table_, cost, error.id, group, true))
+      if (const auto x = reaches(curve.points, level)) {
+        needed[curve.name] = *x;
+        best = best == 0 ? *x : std::min(best, *x);
+      }
+    for (auto& row : rows) {
+      const auto found = needed.find(row[1]);
+      row.push_back(found == needed.end() ? "" : digits(found->second));
+      row.push_back(found == needed.end() ? "" : fmt::format("{:.2f}", found->second / best));
+    }
+    return !needed.empty();
+  }
+
+  void spread() {
+    Cells cells{{"measure", "runs", "mean", "standard deviation", "5 %", "median", "95 %"}};
+    for (const Measure& m : study_.measures) {
+      std::vector<double> values;
+      for (std::size_t row = 0; row < table_.rows.size(); ++row)
+        if (const double x = table_.number(row, m.id); table_.done(row) && std::isfinite(x)) values.push_back(x);
+      if (values.size() < 2) continue;
+      std::sort(values.begin(), values.end());
+      const double n = static_cast<double>(values.size());
+      double mean = 0, square = 0;
+      for (const double x : values) mean += x / n;
+      for (const double x : values) square += (x - mean) * (x - mean) / (n - 1);
+      const auto quantile = [&](double q) {
+        const double place = q * (n - 1);
+        const auto i = static_cast<std::size_t>(place);
+        const double next = values[std::min(i + 1, values.size() - 1)];
+        return digits(values[i] + (place - static_cast<double>(i)) * (next - values[i]));
+      };
+      cells.push_back({m.id, std::to_string(values.size()), digits(mean), digits(std::sqrt(square)), quantile(0.05),
+                       quantile(0.5), quantile(0.95)});
+    }
+    heading("Spread");
+    table(std::move(cells));
+  }
+
+  void failures() {
+    Cells cells{study_.variables()};
+    cells.front().insert(cells.front().end(), {"status", "reason"});
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      if (table_.done(row)) continue;
+      cells.emplace_back();
+      for (const std::string& column : cells.front()) cells.back().push_back(table_.text(row, column));
+    }
+    if (cells.size() == 1) return;
+    heading("Runs without a result");
+    table(std::move(cells));
+  }
+
+  const Study& study_;
+  const Table& table_;
+  Page page_;
+};
+
+}  // namespace
+
+Page make_page(const Study& study, const Table& table, const std::string& about) {
+  return Writer(study, table).write(about);
+}
+
+}  // namespace msml

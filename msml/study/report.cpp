@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// results.json.
+#include "msml/study/report.hpp"
+
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace msml {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown processor";
+}
+
+Json row_json(const Table& table, std::size_t row) {
+  Json json;
+  for (const std::string& column : table.columns) {
+    const double number = table.number(row, column);
+    const std::string& text = table.text(row, column);
+    json[column] = text.empty() ? Json() : std::isfinite(number) && column != "key" ? Json(number) : Json(text);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string machine() {
+  utsname system{};
+  ::uname(&system);
+  const double memory = static_cast<double>(::sysconf(_SC_PHYS_PAGES)) * static_cast<double>(::sysconf(_SC_PAGE_SIZE));
+  return fmt::format("{}, {} processors, {:.1f} GB, {} {}", processor(), std::thread::hardware_concurrency(),
+                     memory / 1e9, system.sysname, system.release);
+}
+
+std::map<std::string, std::string> column_units(const Study& study) {
+  std::map<std::string, std::string> units{{"unknowns", "1"}};
+  for (const Measure& m : study.measures) {
+    units[m.id] = m.unit;
+    if (m.quantity == Quantity::time) units[m.id + "_low"] = units[m.id + "_high"] = m.unit;
+  }
+  return units;
+}
+
+std::string study_json(const Study& study, const Table& table, const std::string& scene, const std::string& units,
+                       const StudyOptions& options, const Sharing& sharing, double seconds) {
+  Json json{{"program", "msml"},
+            {"version", MSML_VERSION},
+            {"study", study.id},
+            {"scene", scene},
+            {"machine", machine()},
+            {"threads", options.threads},
+            {"repetitions", study.repetitions()},
+            {"limit", study.limit > 0 ? Json(study.limit) : Json()},
+            {"seconds", seconds},
+            {"nodesComputed", sharing.computed},
+            {"nodesShared", sharing.shared}};
+  if (!units.empty()) json["units"] = units;
+  for (const auto& [column, unit] : column_units(study)) json["columnUnits"][column] = unit;
+  json["variables"] = study.variables();
+  json["rows"] = Json::array();
+  for (std::size_t row = 0; row < table.rows.size(); ++row) json["rows"].push_back(row_json(table, row));
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace msml

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs, one after another where time is measured, else several at once.
+#include "msml/study/runner.hpp"
+
+#include <fmt/format.h>
+#include <sched.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <thread>
+
+#include "msml/core/atomic_file.hpp"
+#include "msml/study/measure.hpp"
+
+namespace msml {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+/// Ends a run that takes longer than its limit, the next time it reports progress.
+class Stopwatch final : public Watcher {
+ public:
+  explicit Stopwatch(double limit) : limit_(limit) {}
+  void started(int) override {}
+  void progress(int, double, const std::string&) override {
+    if (limit_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() > limit_)
+      throw Error(fmt::format("ended after its limit of {} s", limit_), {}, Failure::interrupted);
+  }
+  void finished(int, const NodeReport&) override {}
+  void note(int, const std::string&) override {}
+  void warning(int, const std::string&) override {}
+  void print(int, const std::string&) override {}
+
+ private:
+  double limit_;
+  Clock::time_point start_ = Clock::now();
+};
+
+const char* status_of(const Error& error) {
+  switch (error.failure()) {
+    case Failure::input:
+      return "refused";
+    case Failure::not_converged:
+      return "not converged";
+    case Failure::interrupted:
+      return "limit";
+    default:
+      return "failed";
+  }
+}
+
+/// The processor's first threads, so that timings are not disturbed by moves between processors.
+void pin(int threads) {
+  cpu_set_t allowed, some;
+  CPU_ZERO(&some);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
+  for (int cpu = 0, taken = 0; cpu < CPU_SETSIZE && taken < threads; ++cpu)
+    if (CPU_ISSET(cpu, &allowed)) CPU_SET(cpu, &some), ++taken;
+  ::sched_setaffinity(0, sizeof some, &some);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return n % 2 == 1 ? values[n / 2] : 0.5 * (values[n / 2 - 1] + values[n / 2]);
+}
+
+std::string digits(double x) { return fmt::format("{:.10g}", x); }
+
+class Runner {
+ public:
+  Runner(const Study& study, const Registry& registry, const StudyOptions& options, SharedResults& results)
+      : study_(study), registry_(registry), options_(options), results_(results) {}
+
+  std::vector<std::string> row(const StudyRun& run, std::size_t number) {
+    Row row{.status = "refused", .reason = run.reason, .unknowns = {}, .samples = {}};
+    row.samples.resize(study_.measures.size());
+    if (run.scene) {
+      try {
+        carry_out(run, options_.folder / "runs" / fmt::format("{:04}", number), row);
+        row.status = "done";
+      } catch (const Error& error) {
+        row.status = status_of(error);
+        row.reason = error.str();
+      }
+    }
+    return cells(run, row);
+  }
+
+ private:
+  struct Row {
+    std::string status, reason;
+    std::optional<double> unknowns;
+    std::vector<std::vector<double>> samples;  ///< per measure, one per pass
+  };
+
+  void carry_out(const StudyRun& run, const fs::path& folder, Row& row) {
+    std::optional<RunShelf> truth_shelf;
+    std::optional<RunResult> truth;
+    if (run.reference) {
+      truth_shelf.emplace(results_, run.reference->keys, 0);
+      truth = pass(*run.reference, *truth_shelf, folder / "reference", 0);
+      if (!truth->errors.empty()) throw Error("the reference: " + truth->errors.front().str(), {}, Failure::internal);
+    }
+    for (int repetition = 0; repetition < study_.repetitions(); ++repetition) {
+      RunShelf shelf(results_, run.scene->keys, static_cast<std::size_t>(repetition));
+      const RunResult result = pass(*run.scene, shelf, folder, study_.limit);
+      const Finished finished{*run.scene, result, shelf};
+      row.unknowns = unknowns(finished);
+      if (!result.errors.empty()) throw result.errors.front();
+      std::optional<Finished> reference;
+      if (truth) reference.emplace(Finished{*run.reference, *truth, *truth_shelf});
+      for (std::size_t i = 0; i < run.study.measures.size(); ++i)
+        if (repetition == 0 || run.study.measures[i].quantity == Quantity::time)
+          row.samples[i].push_back(
+              measure(run.study.measures[i], run, finished, reference ? &*reference : nullptr, registry_));
+    }
+  }
+
+  RunResult pass(const Prepared& scene, RunShelf& shelf, const fs::path& folder, double limit) {
+    Stopwatch watch(limit);
+    return msml::run(scene.graph, scene.plan, registry_, {folder, 1, options_.threads, &shelf}, watch);
+  }
+
+  std::vector<std::string> cells(const StudyRun& run, const Row& row) const {
+    std::vector<std::string> cells;
+    for (const auto& [name, value] : run.settings) cells.push_back(value);
+    cells.push_back(row.status);
+    cells.push_back(row.unknowns ? digits(*row.unknowns) : "");
+    for (std::size_t i = 0; i < study_.measures.size(); ++i) {
+      const auto& samples = row.samples[i];
+      const bool timed = study_.measures[i].quantity == Quantity::time;
+      if (samples.empty()) {
+        cells.insert(cells.end(), timed ? 3 : 1, "");
+        continue;
+      }
+      cells.push_back(digits(median(samples)));
+      if (!timed) continue;
+      cells.push_back(digits(*std::min_element(samples.begin(), samples.end())));
+      cells.push_back(digits(*std::max_element(samples.begin(), samples.end())));
+    }
+    cells.push_back(row.reason);
+    cells.push_back(run.key);
+    return cells;
+  }
+
+  const Study& study_;
+  const Registry& registry_;
+  const StudyOptions& options_;
+  SharedResults& results_;
+};
+
+/// The row of an earlier session with this key, or null.
+const std::vector<std::string>* known_row(const Table& known, const std::vector<std::string>& columns,
+                                          const std::string& key) {
+  if (known.columns != columns) return nullptr;
+  for (const auto& row : known.rows)
+    if (row.back() == key) return &row;
+  return nullptr;
+}
+
+/// The nodes that a run keeps in memory, its own and those of its reference.
+std::vector<std::string> all_used(const StudyRun& run) {
+  std::vector<std::string> keys = run.scene ? run.scene->used() : std::vector<std::string>{};
+  if (run.scene && run.reference)
+    for (const std::string& key : run.reference->used()) keys.push_back(key);
+  return keys;
+}
+
+}  // namespace
+
+std::vector<std::string> study_columns(const Study& study) {
+  std::vector<std::string> columns = study.variables();
+  columns.insert(columns.end(), {"status", "unknowns"});
+  for (const Measure& each : study.measures) {
+    columns.push_back(each.id);
+    if (each.quantity == Quantity::time) columns.insert(columns.end(), {each.id + "_low", each.id + "_high"});
+  }
+  columns.insert(columns.end(), {"reason", "key"});
+  return columns;
+}
+
+Table run_study(const Study& study, const std::vector<StudyRun>& runs, const Registry& registry,
+                const StudyOptions& options, const Table& known, const RowSink& sink, Sharing& sharing) {
+  if (study.timed()) pin(options.threads);
+  Table table{study_columns(study), std::vector<std::vector<std::string>>(runs.size())};
+  std::vector<std::size_t> open;
+  SharedResults results;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (const auto* row = known_row(known, table.columns, runs[i].key))
+      table.rows[i] = *row;
+    else
+      open.push_back(i), results.expect(all_used(runs[i]));
+  }
+  Runner runner(study, registry, options, results);
+  std::mutex mutex;
+  std::atomic<std::size_t> next = 0;
+  const auto work = [&] {
+    for (std::size_t i = next++; i < open.size(); i = next++) {
+      auto row = runner.row(runs[open[i]], open[i]);
+      results.release(all_used(runs[open[i]]));
+      const std::lock_guard lock(mutex);
+      table.rows[open[i]] = std::move(row);
+      Table so_far{table.columns, {}};
+      for (const auto& each : table.rows)
+        if (!each.empty()) so_far.rows.push_back(each);
+      write_whole(options.folder / "results.csv", to_csv(so_far));
+      sink(table, open[i]);
+    }
+  };
+  {
+    std::vector<std::jthread> others;
+    for (int i = 1; i < (study.timed() ? 1 : options.jobs); ++i) others.emplace_back(work);
+    work();
+  }
+  write_whole(options.folder / "results.csv", to_csv(table));
+  if (!options.keep) {
+    std::error_code ignored;
+    fs::remove_all(options.folder / "runs", ignored);
+  }
+  sharing = {results.computed(), results.shared()};
+  return table;
+}
+
+}  // namespace msml

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a study of a scene says: what varies, against what errors are taken, what is measured, what is charted.
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "msml/core/registry.hpp"
+
+namespace msml {
+
+/// Variables that change together, one tuple of texts for each of their values; or a range of one variable.
+struct Vary {
+  std::vector<std::string> variables;
+  std::vector<std::vector<std::string>> values;  ///< #values x #variables; empty for a range to be sampled
+  double from = 0, to = 0;                       ///< of a range
+  bool ranged = false, log = false, whole = false;
+  Location where;
+};
+
+/// A setting of variables, name by name.
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+/// What errors are taken against: the same scene with other settings, a file, or a formula per component.
+struct Truth {
+  Settings set;
+  std::string file;   ///< relative to the scene's folder
+  Formulas expected;  ///< in X, Y, Z, t
+  double time = 0;    ///< value of t in expected
+  Location where;
+};
+
+enum class Quantity : std::uint8_t { error, time, memory, iterations, probe, value, energy };
+
+/// One number of each run.
+struct Measure {
+  Quantity quantity = Quantity::error;
+  std::string id;     ///< column of the table
+  std::string what;   ///< norm, part of the time, kind of memory or iterations, component of the probe
+  std::string field;  ///< of an error
+  std::string of;     ///< scene output or task; "": the first series of the scene
+  bool relative = true;
+  bool against_truth = false;  ///< of a probe: its error
+  std::string unit;            ///< "s", "bytes", "1" or ""
+  Location where;
+};
+
+/// How the axes of a chart are divided.
+struct Axes {
+  bool log_x = true, log_y = true;
+};
+
+struct Chart {
+  std::string id, title;
+  std::string x, y;                ///< columns
+  std::vector<std::string> group;  ///< variables whose values make the curves
+  Axes axes;
+  std::vector<double> slopes;  ///< triangles to be drawn
+  Location where;
+};
+
+/// How the values of several `vary` come together.
+enum class Combine : std::uint8_t { product, zip, latin_hypercube };
+
+struct Study {
+  std::string id, title;
+  Combine combine = Combine::product;
+  int samples = 0;  ///< of a Latin hypercube
+  int seed = 1;
+  int repeat = 0;    ///< of timings; 0: 5 where time is measured, else 1
+  double limit = 0;  ///< seconds of one run; 0: none
+  std::vector<Vary> vary;
+  std::optional<Truth> truth;
+  std::vector<Measure> measures;
+  std::vector<Chart> charts;
+  Location where;
+  /// Names of the variables, in the order of the columns.
+  std::vector<std::string> variables() const;
+  bool timed() const;       ///< a time is measured
+  int repetitions() const;  ///< passes over each run
+};
+
+/// Adds <studies> and what stands in it.
+void add_study_tags(Registry& registry);
+
+/// Told of each fault.
+using FaultSink = std::function<void(const Location&, const std::string&)>;
+
+/// The study that a record of <study> describes; what makes no sense is told to `fault`.
+Study make_study(const Record& record, const FaultSink& fault);
+
+/// "a=1 b=2", or "a=1 2; b=3" where values hold blanks. A part without '=' is told to `fault`.
+Settings parse_settings(const std::string& text, const Location& where, const FaultSink& fault);
+
+}  // namespace msml

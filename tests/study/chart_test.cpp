@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Scripts of charts, and pages.
+#include "msml/study/chart.hpp"
+
+#include <gmock/gmock.h>
+
+#include "msml/core/error.hpp"
+#include "msml/study/page.hpp"
+#include "tests/compile/scenes.hpp"
+
+namespace msml {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+Table convergence() {
+  return {{"kind", "n", "status", "unknowns", "error", "time", "time_low", "time_high", "reason", "key"},
+          {{"tet4", "1", "done", "100", "0.4", "0.01", "0.008", "0.02", "", "k"},
+           {"tet4", "2", "done", "800", "0.1", "0.1", "0.09", "0.12", "", "k"},
+           {"tet4", "4", "done", "6400", "0.025", "1", "0.9", "1.2", "", "k"},
+           {"tet10", "1", "done", "800", "0.08", "0.2", "0.1", "0.3", "", "k"},
+           {"tet10", "2", "done", "6400", "0.005", "2", "1.9", "2.1", "", "k"},
+           {"tet10", "4", "not converged", "51200", "", "", "", "", "it stalled", "k"}}};
+}
+
+Study study() {
+  Study study{.id = "s", .title = "Elements", .vary = {}, .truth = {}, .measures = {}, .charts = {}, .where = {}};
+  study.vary.push_back({.variables = {"kind"}, .values = {}, .where = {}});
+  study.vary.push_back({.variables = {"n"}, .values = {}, .where = {}});
+  Measure error{.id = "error", .what = "L2", .field = "displacement", .of = "", .unit = "1", .where = {}};
+  error.against_truth = true;
+  study.measures.push_back(error);
+  study.measures.push_back(
+      {.quantity = Quantity::time, .id = "time", .what = "total", .field = "", .of = "", .unit = "s", .where = {}});
+  study.charts.push_back({.id = "c",
+                          .title = "T",
+                          .x = "unknowns",
+                          .y = "error",
+                          .group = {"kind"},
+                          .axes = {},
+                          .slopes = {-0.667},
+                          .where = {}});
+  return study;
+}
+
+TEST(Chart, NamesItsCurvesAndMarksWhatFailed) {
+  const std::string script = gnuplot_script(convergence(), study().charts[0], {});
+  EXPECT_THAT(script, HasSubstr("set label \"tet4\""));
+  EXPECT_THAT(script, HasSubstr("set label \"tet10\""));
+  EXPECT_THAT(script, HasSubstr("$curve0 << EOD\n100 0.4 "));
+  EXPECT_THAT(script, HasSubstr("$failed << EOD\n51200 "));
+  EXPECT_THAT(script, HasSubstr("set label \"-0.667\""));
+  EXPECT_THAT(script, Not(HasSubstr("errorbars")));
+}
+
+TEST(Chart, TimesHaveErrorBars) {
+  Chart chart = study().charts[0];
+  chart.x = "time";
+  const std::string script = gnuplot_script(convergence(), chart, {.units = {{"time", "s"}}});
+  EXPECT_THAT(script, HasSubstr("xerrorbars"));
+  EXPECT_THAT(script, HasSubstr("set xlabel \"time [s]\""));
+}
+
+TEST(Chart, WordsStandInARow) {
+  Chart chart = study().charts[0];
+  chart.x = "kind";
+  chart.group = {"n"};
+  EXPECT_THAT(gnuplot_script(convergence(), chart, {}), HasSubstr("set xtics (\"tet4\" 1, \"tet10\" 2)"));
+}
+
+TEST(Chart, WithoutNumbersItIsRefused) {
+  Chart chart = study().charts[0];
+  chart.y = "reason";
+  EXPECT_THROW(gnuplot_script(convergence(), chart, {}), Error);
+}
+
+TEST(Chart, GnuplotDrawsIt) {
+  const tiny::Folder folder;
+  const std::string problem = draw(convergence(), study().charts[0], {}, folder.path());
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "c.gp"));
+  if (problem.find("not installed") != std::string::npos) GTEST_SKIP() << problem;
+  EXPECT_EQ(problem, "");
+  for (const char* file : {"c.svg", "c.png"})
+    EXPECT_GT(std::filesystem::file_size(folder.path() / file), 1000U) << file;
+}
+
+TEST(Page, SaysWhatAccuracyCosts) {
+  const std::string page = to_markdown(make_page(study(), convergence(), "About."));
+  EXPECT_THAT(page, HasSubstr("# Elements\n\nAbout. 6 runs: 5 done, 1 not converged."));
+  EXPECT_THAT(page, HasSubstr("![c](c.svg)"));
+  EXPECT_THAT(page, HasSubstr("| error | unknowns | tet4 | -0.67 | ± 0.00 | 3 |"));  // 0.4 (n / 100)^(-2/3)
+  EXPECT_THAT(page, HasSubstr("| error | unknowns | tet10 | -1.33 | two runs only | 2 |"));
+  EXPECT_THAT(page, HasSubstr("| 10 % | 0.1 | 10 % | tet4 | 2 |"));
+  EXPECT_THAT(page, HasSubstr("| 1 % | 2 | 0.5 % | tet10 | 2 |"));
+  EXPECT_THAT(page, HasSubstr("| 0.1 % | not reached |  |  |  |"));
+  // 5 % on the lines of the logarithms: tet4 at 800 * 2^(3/2), tet10 at 800 * (8/5)^(3/4).
+  EXPECT_THAT(page, HasSubstr("| 5 % | tet4 | 2263 | 1.99 |"));
+  EXPECT_THAT(page, HasSubstr("| 5 % | tet10 | 1138 | 1.00 |"));
+  EXPECT_THAT(page, HasSubstr("| tet10 | 4 | not converged | it stalled |"));
+}
+
+TEST(Page, IsOneFileOfHtml) {
+  const tiny::Folder folder;
+  folder.add("c.svg", "<?xml?><svg>drawn</svg>");
+  const std::string html = to_html(make_page(study(), convergence(), "a < b"), folder.path());
+  EXPECT_THAT(html, HasSubstr("<h1>Elements</h1>"));
+  EXPECT_THAT(html, HasSubstr("a &lt; b"));
+  EXPECT_THAT(html, HasSubstr("<figure><svg>drawn</svg></figure>"));
+}
+
+}  // namespace
+}  // namespace msml

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A scene with a study in, a table out.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "msml/study/runner.hpp"
+#include "tests/commands/real_language.hpp"
+
+namespace msml {
+namespace {
+
+/// A bar under its own weight, with a study on line 2 … of `studies`.
+std::string bar(const std::string& studies) {
+  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/></variables>
+<workflow>
+  <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" when="${kind} = tet4"/>
+  <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" quadratic="true" when="${kind} = tet10"/>
+  <ComputeIndicesFromBoxROI id="all" mesh="${mesh}" select="elements" box="-9 -9 -9 9 9 9"/>
+  <ComputeIndicesFromBoxROI id="base" mesh="${mesh}" select="points" box="-9 -9 -1e-6 9 9 1e-6"/>
+</workflow>
+<scene><object id="bar">
+  <mesh> <linearTet mesh="${mesh}" when="${kind} = tet4"/> <quadraticTet mesh="${mesh}" when="${kind} = tet10"/> </mesh>
+  <material><region indices="${all}"> <linearElasticMaterial youngModulus="${E}" poissonRatio="0" strain="small"/>
+    <mass massDensity="1"/> </region></material>
+  <constraints><constraint> <fixedConstraint indices="${base}"/> </constraint></constraints>
+  <output> <displacement id="u"/> <probe id="tip" point="2 2 4" field="displacement"/> </output>
+</object></scene>
+<environment><solver timeIntegration="static" linearSolver="direct"/>
+  <simulation><step gravity="0 0 -10"/></simulation></environment>
+<studies>)" +
+         studies + "</studies></msml>";
+}
+
+struct Ran {
+  Table table;
+  Sharing sharing;
+};
+
+Ran run(const std::string& study, const tiny::Folder& folder, const Table& known = {}) {
+  std::vector<Fault> faults;
+  const Document document = parse_document(bar(study), (folder.path() / "s.xml").string(), faults);
+  const Compilation compilation = compile(document, real_language());
+  EXPECT_EQ(tiny::lines(compilation.faults), "");
+  const Study& first = compilation.studies.at(0);
+  const auto runs = prepare_runs(document, real_language(), {}, first);
+  Ran ran;
+  const StudyOptions options{.folder = folder.path() / "out"};
+  ran.table = run_study(
+      first, runs, real_language(), options, known, [](const Table&, std::size_t) {}, ran.sharing);
+  return ran;
+}
+
+TEST(StudyRun, AColumnUnderItsOwnWeightIsExactWithQuadraticElements) {
+  const tiny::Folder folder;
+  // nu = 0: u_z = -rho g (L Z - Z^2 / 2) / E, which quadratic elements hold exactly; the tip sinks by rho g L^2 / (2
+  // E).
+  const Ran ran = run(R"xml(<study id="s"> <vary variable="kind" values="tet4 tet10"/> <vary variable="n" values="2 4 8"/>
+    <reference expression="0, 0, -0.01*(4*Z-Z^2/2)"/> <measure id="error" error="L2"/> <measure probe="tip" component="z"/>
+    </study>)xml",
+                      folder);
+  EXPECT_EQ(ran.table.columns,
+            (std::vector<std::string>{"kind", "n", "status", "unknowns", "error", "tip_z", "reason", "key"}));
+  ASSERT_EQ(ran.table.rows.size(), 6U);
+  for (std::size_t row = 0; row < 6; ++row) EXPECT_EQ(ran.table.text(row, "status"), "done");
+  EXPECT_LT(ran.table.number(5, "error"), 1e-9);  // round-off of the solver
+  EXPECT_NEAR(ran.table.number(5, "tip_z"), -0.08, 1e-10);
+  EXPECT_EQ(ran.table.number(3, "unknowns"), 3 * (125 - 25));
+  // Linear elements: order 2, so half the size gives a quarter of the error, within what coarse meshes allow.
+  EXPECT_NEAR(ran.table.number(1, "error") / ran.table.number(2, "error"), 4, 1);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out" / "runs"));
+  EXPECT_EQ(to_csv(read_csv(folder.path() / "out" / "results.csv")), to_csv(ran.table));
+}
+
+TEST(StudyRun, ErrorsAreTakenAgainstAnotherSetting) {
+  const tiny::Folder folder;
+  const Ran ran = run(R"(<study id="s"> <vary variable="n" values="1 2"/> <reference set="kind=tet10 n=2"/>
+    <measure id="error" error="RMS"/> <measure id="tip_error" probe="tip" component="z" error="RMS"/></study>)",
+                      folder);
+  EXPECT_GT(ran.table.number(0, "error"), ran.table.number(1, "error"));
+  EXPECT_GT(ran.table.number(1, "error"), 1e-3);
+  EXPECT_LT(ran.table.number(1, "tip_error"), 0.2);
+}
+
+TEST(StudyRun, WhatDoesNotVaryIsComputedOnce) {
+  const tiny::Folder folder;
+  const Ran ran =
+      run(R"(<study id="s"> <vary variable="E" values="1000 2000 3000 4000"/> <measure probe="tip"/></study>)", folder);
+  // The mesh and two sets of indices are there once; four simulations.
+  EXPECT_EQ(ran.sharing.computed, 3U + 4U);
+  EXPECT_EQ(ran.sharing.shared, 3U * 3U);
+  EXPECT_NEAR(ran.table.number(3, "tip") * 4, ran.table.number(0, "tip"), 1e-9);
+}
+
+TEST(StudyRun, ARunWithoutAResultIsARowWithItsReason) {
+  const tiny::Folder folder;
+  const Ran ran = run(R"(<study id="s"> <vary variable="E" values="1000 -1 1000"/> <vary variable="n" values="1"/>
+    <measure probe="tip"/></study>)",
+                      folder);
+  EXPECT_EQ(ran.table.text(0, "status"), "done");
+  EXPECT_EQ(ran.table.text(1, "status"), "refused");
+  EXPECT_EQ(ran.table.text(1, "tip"), "");
+  EXPECT_NE(ran.table.text(1, "reason").find("youngModulus = -1 is not > 0"), std::string::npos)
+      << ran.table.text(1, "reason");
+  EXPECT_EQ(ran.table.text(2, "status"), "done");
+}
+
+TEST(StudyRun, AStoppedStudyGoesOnFromItsTable) {
+  const tiny::Folder folder;
+  const std::string study = R"(<study id="s"> <vary variable="E" values="1000 2000"/> <measure probe="tip"/></study>)";
+  Table half = run(study, folder).table;
+  half.rows.pop_back();
+  half.rows[0][3] = "12.5";  // shows that this row is taken as it is
+  const Ran ran = run(study, folder, half);
+  EXPECT_EQ(ran.table.text(0, "tip"), "12.5");
+  EXPECT_EQ(ran.sharing.computed, 4U);
+  const std::string other =
+      R"(<study id="s"> <vary variable="E" values="1000 2000"/> <measure iterations="newton" id="tip"/></study>)";
+  EXPECT_EQ(run(other, folder, half).table.number(0, "tip"), 1) << "another measure is no old row";
+}
+
+TEST(StudyRun, TimesAreMediansBetweenTheirLowestAndHighest) {
+  const tiny::Folder folder;
+  const Ran ran = run(R"(<study id="s" repeat="3"> <vary variable="E" values="1000 2000"/> <measure time="total"/>
+    <measure id="mesh_time" time="mesh"/></study>)",
+                      folder);
+  EXPECT_LE(ran.table.number(0, "time_total_low"), ran.table.number(0, "time_total"));
+  EXPECT_GE(ran.table.number(0, "time_total_high"), ran.table.number(0, "time_total"));
+  EXPECT_GT(ran.table.number(0, "time_total"), ran.table.number(0, "mesh_time"));
+  EXPECT_EQ(ran.table.number(1, "mesh_time"), ran.table.number(0, "mesh_time")) << "the mesh was timed once, thrice";
+  EXPECT_EQ(ran.sharing.computed, 3U * (3U + 2U));
+}
+
+TEST(StudyRun, ARunBeyondItsLimitIsEndedAndSaysSo) {
+  const tiny::Folder folder;
+  const Ran ran =
+      run(R"(<study id="s" limit="1e-6"> <vary variable="E" values="1000"/> <measure probe="tip"/></study>)", folder);
+  EXPECT_EQ(ran.table.text(0, "status"), "limit");
+  EXPECT_NE(ran.table.text(0, "reason").find("ended after its limit of 1e-06 s"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace msml
