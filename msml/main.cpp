@@ -93,10 +93,13 @@ struct CommandLine {
     studies->add_flag("--html", study.html, "page and charts in one HTML file too");
     studies->add_flag("--fresh", study.fresh, "run everything anew (default: go on where results.csv ends)");
     studies->add_flag("--keep", study.keep, "keep the files of the runs");
+    studies->add_flag("--no-sharing", study.no_sharing, "compute every node of every run, to see what sharing saves");
     charts->add_option("table", chart.table, "results.csv of a study")->required();
     charts->add_option("--x", chart.x, "column along the horizontal axis")->required();
     charts->add_option("--y", chart.y, "column along the vertical axis")->required();
     charts->add_option("--group", chart.group, "column whose values make the curves (may be repeated)")
+        ->allow_extra_args(false);
+    charts->add_option("--only", chart.only, "name=value: draw these rows only (may be repeated)")
         ->allow_extra_args(false);
     charts->add_option("--scale", chart.scale, "loglog, linear, logx or logy")
         ->check(CLI::IsMember({"loglog", "linear", "logx", "logy"}));

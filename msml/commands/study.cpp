@@ -86,7 +86,8 @@ class StudyRunner {
     StudyOptions options{.folder = fs::path(arguments_.scene.output_folder) / study.id,
                          .jobs = processors(arguments_.scene.jobs),
                          .threads = processors(arguments_.scene.threads),
-                         .keep = arguments_.keep};
+                         .keep = arguments_.keep,
+                         .share = !arguments_.no_sharing};
     if (!study.timed() && arguments_.scene.threads == 0) options.threads = 1;  // several runs share the processors
     const auto runs = prepare_runs(document_, registry_, compile_options_, study);
     if (!arguments_.scene.quiet) std::fprintf(stderr, "study %s: %zu runs\n", study.id.c_str(), runs.size());
@@ -138,7 +139,9 @@ int chart_command(const ChartArguments& arguments) {
       throw Error(fmt::format("{} has no column {}{}", arguments.table, column, did_you_mean(column, table.columns)));
   };
   check(arguments.x);
-  check(arguments.y);
+  if (arguments.y != share_column) check(arguments.y);
+  Settings only;
+  for (const auto& [name, value] : settings(arguments.only)) check(name), only.emplace_back(name, value);
   for (const std::string& column : arguments.group) check(column);
   const fs::path output = arguments.output.empty()
                               ? fs::path(arguments.table).parent_path() / (arguments.y + "_over_" + arguments.x)
@@ -149,6 +152,7 @@ int chart_command(const ChartArguments& arguments) {
                     .x = arguments.x,
                     .y = arguments.y,
                     .group = arguments.group,
+                    .only = only,
                     .axes = {s == "loglog" || s == "logx", s == "loglog" || s == "logy"},
                     .slopes = arguments.slopes,
                     .where = {}};

@@ -9,7 +9,7 @@ namespace msml {
 struct StudyArguments {
   SceneArguments scene;  ///< the output folder holds one folder per study
   std::string name;      ///< the study to run; "": all of the scene
-  bool html = false, fresh = false, keep = false;
+  bool html = false, fresh = false, keep = false, no_sharing = false;
 };
 
 /// Runs the studies of a scene and writes their tables, charts and pages. 0, or 2 for a scene with faults. A run
@@ -20,7 +20,7 @@ int study_command(const Registry& registry, const StudyArguments& arguments);
 struct ChartArguments {
   std::string table;  ///< results.csv
   std::string x, y, scale = "loglog", title, output;
-  std::vector<std::string> group;
+  std::vector<std::string> group, only;  ///< only: "name=value"
   std::vector<double> slopes;
 };
 

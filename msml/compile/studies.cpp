@@ -57,12 +57,13 @@ void check_chart(Work& work, const Study& study, const Chart& chart) {
                                           fmt::join(names, ", ")));
   };
   known(chart.x, columns, "x");
-  known(chart.y, columns, "y");
+  if (chart.y != share_column) known(chart.y, columns, "y");
+  for (const auto& [name, value] : chart.only) known(name, variables, "only");
   for (const std::string& name : chart.group) known(name, variables, "group");
 }
 
 void check_study(Work& work, const Study& study, const FaultSink& fault) {
-  std::set<std::string> columns{"unknowns", "status", "reason", "run", "key"};
+  std::set<std::string> columns{"unknowns", "status", "reason", "key", share_column};
   for (const Vary& vary : study.vary)
     for (const std::string& name : vary.variables) {
       check_variable(work, name, vary.where);

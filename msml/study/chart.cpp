@@ -55,8 +55,9 @@ std::string quoted(const std::string& text) {
 class Drawing {
  public:
   Drawing(const Table& table, const Chart& chart, const ChartStyle& style)
-      : table_(table), chart_(chart), style_(style) {
+      : table_(filtered(table, chart.only)), chart_(chart), style_(style) {
     name_positions();
+    if (chart_.y == share_column) add_shares();
     const bool log = chart.axes.log_x || chart.axes.log_y;
     curves_ = curves(table_, chart.x, chart.y, chart.group, log);
     if (!chart.axes.log_x || !chart.axes.log_y) keep_fitting();
@@ -103,6 +104,21 @@ class Drawing {
           break;
         }
     if (!words_.empty()) chart_.axes.log_x = false;
+  }
+
+  /// The column of the empirical distribution of x.
+  void add_shares() {
+    std::vector<double> all;
+    for (std::size_t row = 0; row < table_.rows.size(); ++row)
+      if (table_.done(row)) add(all, row, chart_.x, false);
+    std::sort(all.begin(), all.end());
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const double x = table_.number(row, chart_.x);
+      const auto rank = std::upper_bound(all.begin(), all.end(), x) - all.begin();
+      table_.rows[row].push_back(
+          std::isfinite(x) ? fmt::format("{:.6g}", static_cast<double>(rank) / static_cast<double>(all.size())) : "");
+    }
+    table_.columns.emplace_back(share_column);
   }
 
   /// curves() keeps positive numbers only where any axis is logarithmic: here only those that their own axis can show.

@@ -186,24 +186,30 @@ Part<Chart> chart_tag() {
   Part<Chart> tag("chart", "chart", "A picture of one column over another.");
   const auto id = tag.parameter<std::string>("id", {.optional = true, .doc = "name of the files; default: y_over_x"});
   const auto x = tag.parameter<std::string>("x", {.doc = "a variable, unknowns or a measure"});
-  const auto y = tag.parameter<std::string>("y", {.doc = "a measure"});
+  const auto y =
+      tag.parameter<std::string>("y", {.doc = "a measure; or share: of the values of x, those that are not larger"});
   const auto group =
       tag.parameter<Words>("group", {.fallback = Words{}, .doc = "variables whose values make the curves"});
   const auto scale = tag.parameter<std::string>(
       "scale", {.fallback = "loglog", .choices = {"loglog", "linear", "logx", "logy"}, .doc = "of the axes"});
+  const auto only = tag.parameter<std::string>(
+      "only",
+      {.optional = true, .doc = "rows that are drawn: 'load=twist'; ';' between them where a value holds blanks"});
   const auto slopes = tag.parameter<std::vector<double>>(
       "slopes", {.fallback = std::vector<double>{}, .doc = "slopes to be drawn as triangles: -0.667 …"});
   const auto title = tag.parameter<std::string>("title", {.optional = true, .doc = "above the chart"});
   tag.build([=](const Record& record) {
-    return [=](const FaultSink&) {
+    return [=](const FaultSink& fault) {
       Chart chart{.id = "",
                   .title = text_of(record, title),
                   .x = record[x],
                   .y = record[y],
                   .group = record[group],
+                  .only = {},
                   .axes = {},
                   .slopes = record[slopes],
                   .where = record.where};
+      if (record.has(only)) chart.only = parse_settings(record[only], record.where, fault);
       chart.id = record.has(id) ? record[id] : chart.y + "_over_" + chart.x;
       const std::string& s = record[scale];
       chart.axes = {s == "loglog" || s == "logx", s == "loglog" || s == "logy"};

@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "msml/study/costs.hpp"
 #include "msml/study/fit.hpp"
 
 namespace msml {
@@ -17,10 +18,7 @@ namespace {
 
 using Cells = std::vector<std::vector<std::string>>;
 
-constexpr double levels[] = {0.1, 0.05, 0.01, 0.001};
-
 std::string digits(double x) { return fmt::format("{:.4g}", x); }
-std::string percent(double x) { return fmt::format("{:.4g} %", 100 * x); }
 
 class Writer {
  public:
@@ -31,12 +29,7 @@ class Writer {
     paragraph(about + " " + outcome());
     for (const Chart& chart : study_.charts) add({Block::Kind::picture, chart.id, {}});
     slopes();
-    for (const Measure& m : study_.measures)
-      if (m.against_truth && m.relative) {
-        front(m);
-        cheapest(m);
-        ratios(m);
-      }
+    for (Block& block : cost_blocks(study_, table_)) add(std::move(block));
     if (study_.combine == Combine::latin_hypercube) spread();
     failures();
     heading("All runs");
@@ -65,9 +58,9 @@ class Writer {
     Cells cells{{"y", "over x", "curve", "slope", "95 % confidence", "runs"}};
     for (const Chart& chart : study_.charts) {
       if (!chart.axes.log_x || !chart.axes.log_y) continue;
-      for (const Curve& curve : curves(table_, chart.x, chart.y, chart.group, true))
+      for (const Curve& curve : curves(filtered(table_, chart.only), chart.x, chart.y, chart.group, true))
         if (const auto fit = fitted_slope(curve.points))
-          cells.push_back({chart.y, chart.x, curve.name, fmt::format("{:.2f}", fit->slope),
+          cells.push_back({chart.y, chart.x, name_of(chart, curve), fmt::format("{:.2f}", fit->slope),
                            std::isfinite(fit->half_width) ? fmt::format("± {:.2f}", fit->half_width) : "two runs only",
                            std::to_string(fit->count)});
     }
@@ -79,89 +72,10 @@ class Writer {
     table(std::move(cells));
   }
 
-  /// The measure of time that accuracy is weighed against, or null.
-  const Measure* time() const {
-    for (const Measure& m : study_.measures)
-      if (m.quantity == Quantity::time) return &m;
-    return nullptr;
-  }
-
-  void front(const Measure& error) {
-    if (!time()) return;
-    Cells cells{{fmt::format("{} [s]", time()->id), error.id}};
-    for (const std::string& name : study_.variables()) cells.front().push_back(name);
-    for (const Curve& curve : curves(table_, time()->id, error.id, {}, true))
-      for (const Point& point : pareto_front(curve.points)) {
-        cells.push_back({digits(point.x), percent(point.y)});
-        for (const std::string& name : study_.variables()) cells.back().push_back(table_.text(point.row, name));
-      }
-    if (cells.size() == 1) return;
-    heading(fmt::format("Pareto front: {} against {}", error.id, time()->id));
-    paragraph("No other run is both faster and more accurate than these.");
-    table(std::move(cells));
-  }
-
-  void cheapest(const Measure& error) {
-    const std::string cost = time() ? time()->id : "unknowns";
-    Cells cells{{"error at most", cost, error.id}};
-    for (const std::string& name : study_.variables()) cells.front().push_back(name);
-    for (const double level : levels) {
-      const Point* best = nullptr;
-      const auto all = curves(table_, cost, error.id, {}, true);
-      for (const Curve& curve : all)
-        for (const Point& point : curve.points)
-          if (point.y <= level && (!best || point.x < best->x)) best = &point;
-      cells.push_back({percent(level), best ? digits(best->x) : "not reached", best ? percent(best->y) : ""});
-      for (const std::string& name : study_.variables())
-        cells.back().push_back(best ? table_.text(best->row, name) : "");
-    }
-    heading(fmt::format("Cheapest setting: {}", error.id));
-    table(std::move(cells));
-  }
-
-  /// Methods: the groups of the first chart of this error.
-  std::vector<std::string> methods(const Measure& error) const {
-    for (const Chart& chart : study_.charts)
-      if (chart.y == error.id && !chart.group.empty()) return chart.group;
-    return {};
-  }
-
-  void ratios(const Measure& error) {
-    const auto group = methods(error);
-    if (group.empty()) return;
-    std::vector<std::string> costs{"unknowns"};
-    if (time()) costs.push_back(time()->id);
-    Cells cells{{"error", "method"}};
-    for (const std::string& cost : costs) cells.front().insert(cells.front().end(), {cost, "to the best"});
-    for (const double level : levels) {
-      Cells rows;
-      for (const std::string& name : distinct(table_, group)) rows.push_back({percent(level), name});
-      bool any = false;
-      for (const std::string& cost : costs) any = add_costs(error, group, cost, level, rows) || any;
-      if (any) cells.insert(cells.end(), rows.begin(), rows.end());
-    }
-    if (cells.size() == 1) return;
-    heading(fmt::format("What each method needs for the same {}", error.id));
-    paragraph(
-        "Between runs by straight lines in the logarithms; empty where a method's runs do not bracket the error.");
-    table(std::move(cells));
-  }
-
-  bool add_costs(const Measure& error, const std::vector<std::string>& group, const std::string& cost, double level,
-                 Cells& rows) const {
-    std::map<std::string, double> needed;
-    double best = 0;
-    for (const Curve& curve : curves(table_, cost, error.id, group, true))
-      if (const auto x = reaches(curve.points, level)) {
-        needed[curve.name] = *x;
-        best = best == 0 ? *x : std::min(best, *x);
-      }
-    for (auto& row : rows) {
-      const auto found = needed.find(row[1]);
-      row.push_back(found == needed.end() ? "" : digits(found->second));
-      row.push_back(found == needed.end() ? "" : fmt::format("{:.2f}", found->second / best));
-    }
-    return !needed.empty();
+  static std::string name_of(const Chart& chart, const Curve& curve) {
+    std::string name = curve.name;
+    for (const auto& [variable, value] : chart.only) name += fmt::format("{}{}", name.empty() ? "" : ", ", value);
+    return name;
   }
 
   void spread() {

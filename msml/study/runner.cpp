@@ -162,6 +162,17 @@ const std::vector<std::string>* known_row(const Table& known, const std::vector<
   return nullptr;
 }
 
+/// The runs as they are, or with keys of their own where nothing is to be shared.
+std::vector<StudyRun> apart(std::vector<StudyRun> runs, bool share) {
+  for (std::size_t i = 0; i < runs.size() && !share; ++i)
+    if (runs[i].scene) {
+      auto own = std::make_shared<Prepared>(*runs[i].scene);
+      for (std::string& key : own->keys) key += fmt::format(" {}", i);
+      runs[i].scene = own;
+    }
+  return runs;
+}
+
 /// The nodes that a run keeps in memory, its own and those of its reference.
 std::vector<std::string> all_used(const StudyRun& run) {
   std::vector<std::string> keys = run.scene ? run.scene->used() : std::vector<std::string>{};
@@ -183,9 +194,10 @@ std::vector<std::string> study_columns(const Study& study) {
   return columns;
 }
 
-Table run_study(const Study& study, const std::vector<StudyRun>& runs, const Registry& registry,
+Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const Registry& registry,
                 const StudyOptions& options, const Table& known, const RowSink& sink, Sharing& sharing) {
   if (study.timed()) pin(options.threads);
+  const std::vector<StudyRun> runs = apart(all_runs, options.share);
   Table table{study_columns(study), std::vector<std::vector<std::string>>(runs.size())};
   std::vector<std::size_t> open;
   SharedResults results;

@@ -14,6 +14,7 @@ struct StudyOptions {
   int jobs = 1;                  ///< runs at once, where no time is measured
   int threads = 1;               ///< threads inside a run
   bool keep = false;             ///< the files of the runs stay
+  bool share = true;             ///< nodes that several runs have in common are computed once
 };
 
 /// How many nodes were computed, and how often a result was taken from another run.

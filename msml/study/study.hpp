@@ -51,10 +51,14 @@ struct Axes {
   bool log_x = true, log_y = true;
 };
 
+/// Besides the columns of the table there is `share`: of all values of x, those that are not larger.
+constexpr const char* share_column = "share";
+
 struct Chart {
   std::string id, title;
   std::string x, y;                ///< columns
   std::vector<std::string> group;  ///< variables whose values make the curves
+  Settings only;                   ///< rows that are drawn: those with these values; empty: all
   Axes axes;
   std::vector<double> slopes;  ///< triangles to be drawn
   Location where;

@@ -91,6 +91,15 @@ std::vector<std::string> distinct(const Table& table, const std::vector<std::str
   return found;
 }
 
+Table filtered(const Table& table, const std::vector<std::pair<std::string, std::string>>& only) {
+  Table some{table.columns, {}};
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    if (std::all_of(only.begin(), only.end(),
+                    [&](const auto& each) { return table.text(row, each.first) == each.second; }))
+      some.rows.push_back(table.rows[row]);
+  return some;
+}
+
 std::string to_csv(const Table& table) {
   std::string text = line(table.columns);
   for (const auto& row : table.rows) text += line(row);

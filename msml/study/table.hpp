@@ -3,6 +3,7 @@
 #pragma once
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace msml {
@@ -23,6 +24,9 @@ struct Table {
   /// "tet10 0.49": the values of some columns.
   std::string words(std::size_t row, const std::vector<std::string>& some) const;
 };
+
+/// The rows that have these values.
+Table filtered(const Table& table, const std::vector<std::pair<std::string, std::string>>& only);
 
 /// Texts that are the same for each row: the values of a column, distinct, in order of first appearance.
 std::vector<std::string> distinct(const Table& table, const std::vector<std::string>& columns);

@@ -57,9 +57,8 @@ TEST(StudyLanguage, WhatMakesNoSenseIsRefusedBeforeAnythingRuns) {
   EXPECT_EQ(study_faults("<vary variable=\"h\"/>"), "s.xml:4: vary needs values, or from and to with count");
   EXPECT_EQ(study_faults("<vary variable=\"h\" from=\"1\" to=\"2\"/>"),
             "s.xml:4: h varies over a range, which needs count");
-  EXPECT_EQ(
-      study_faults("<vary variable=\"h\" from=\"0\" to=\"2\" count=\"3\" scale=\"log\"/>"),
-      "s.xml:4: scale = log needs from and to > 0, not 0 and 2");
+  EXPECT_EQ(study_faults("<vary variable=\"h\" from=\"0\" to=\"2\" count=\"3\" scale=\"log\"/>"),
+            "s.xml:4: scale = log needs from and to > 0, not 0 and 2");
   EXPECT_EQ(study_faults("<vary variable=\"h kind\" values=\"1 exact; 2\"/>"),
             "s.xml:4: values: '2' has 1 words, but 2 variables vary together (h kind)");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><vary variable=\"h\" values=\"2\"/>"),

@@ -55,10 +55,11 @@ TEST(StudyRun, AColumnUnderItsOwnWeightIsExactWithQuadraticElements) {
   const tiny::Folder folder;
   // nu = 0: u_z = -rho g (L Z - Z^2 / 2) / E, which quadratic elements hold exactly; the tip sinks by rho g L^2 / (2
   // E).
-  const Ran ran = run(R"xml(<study id="s"> <vary variable="kind" values="tet4 tet10"/> <vary variable="n" values="2 4 8"/>
+  const Ran ran =
+      run(R"xml(<study id="s"> <vary variable="kind" values="tet4 tet10"/> <vary variable="n" values="2 4 8"/>
     <reference expression="0, 0, -0.01*(4*Z-Z^2/2)"/> <measure id="error" error="L2"/> <measure probe="tip" component="z"/>
     </study>)xml",
-                      folder);
+          folder);
   EXPECT_EQ(ran.table.columns,
             (std::vector<std::string>{"kind", "n", "status", "unknowns", "error", "tip_z", "reason", "key"}));
   ASSERT_EQ(ran.table.rows.size(), 6U);
