@@ -118,7 +118,7 @@ TEST(CommandLine, NamesTheNearestCommandAndShowsHelpWithoutOne) {
   EXPECT_EQ(wrong.code, 2);
   EXPECT_EQ(wrong.err,
             "no command is called exce (did you mean 'exec'?); there are exec, check, show, help, list, "
-            "schema, compare\n");
+            "schema, study, chart, compare\n");
   const Finished none = run_msml("");
   EXPECT_EQ(none.code, 2);
   EXPECT_THAT(none.err, HasSubstr("run a scene"));
