@@ -38,6 +38,7 @@ Equations::Equations(const Model& model)
                       mass_);
   for (const Region& region : model.regions)
     if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
+  for (const Inlay& inlay : model.inlays) small_strain_ = small_strain_ && inlay.region.law->small_strain();
   for (const Region& region : model.regions) has_history_ = has_history_ || !region.prony.tau.empty();
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
   for (const LoadSet& set : loads_) {

@@ -66,6 +66,12 @@ ElementResults empty_results(const ElementRequest& request, std::size_t cells) {
     results.second_piola.assign(6 * cells, 0);
     results.green_lagrange.assign(6 * cells, 0);
   }
+  if (request.fibre_stretch) results.fibre_stretch.assign(cells, 1);
+  if (request.stress_moments) results.stress_moments.assign(27 * cells, 0);
+  if (request.volume) {
+    results.volume.assign(cells, 0);
+    results.deformed_volume.assign(cells, 0);
+  }
   return results;
 }
 
@@ -158,11 +164,44 @@ void measure_tensors(const ElementPoints& points, const Origin& origin, std::siz
   }
 }
 
+void measure_moments(const ElementPoints& points, const Origin& origin, std::size_t cell, ElementResults& results) {
+  Tensor<Lanes> stress = first_piola(points, origin.law, origin.formulation);
+  if (origin.history) take_history(points, origin.history, origin.law.small_strain(), nullptr, &stress);
+  Vec3 middle = Vec3::Zero();
+  for (int q = 0; q < points.count; ++q) middle += points.weight[q] / volume_of(points) * points.place[q];
+  for (int q = 0; q < points.count; ++q) {
+    Vec3 arm = points.place[q] - middle;
+    if (!origin.law.small_strain()) arm += at(points.gradient, q) * arm;
+    for (std::size_t j = 0; j < 3; ++j)
+      add_nine(at(stress, q), points.weight[q] * arm[static_cast<Eigen::Index>(j)],
+               results.stress_moments.data() + 27 * cell + 9 * j);
+  }
+}
+
 double smallest_J(const ElementPoints& points) {
   double smallest = std::numeric_limits<double>::infinity();
   for (int q = 0; q < points.count; ++q)
     smallest = std::min(smallest, (Mat3::Identity() + at(points.gradient, q)).determinant());
   return smallest;
+}
+
+/// Mean of |F g| over the points.
+double fibre_stretch(const ElementPoints& points, const Law& law) {
+  const auto fibre = law.fibre();
+  if (!fibre) return 1;
+  double sum = 0;
+  for (int q = 0; q < points.count; ++q) {
+    const Vec3 g((*fibre)[0][q], (*fibre)[1][q], (*fibre)[2][q]);
+    sum += points.weight[q] * (g + at(points.gradient, q) * g).norm();
+  }
+  return sum / volume_of(points);
+}
+
+void measure_volume(const ElementPoints& points, bool scalar, std::size_t cell, ElementResults& results) {
+  results.volume[cell] = volume_of(points);
+  for (int q = 0; q < points.count; ++q)
+    results.deformed_volume[cell] +=
+        points.weight[q] * (scalar ? 1 : (Mat3::Identity() + at(points.gradient, q)).determinant());
 }
 
 void measure_element(const ElementPoints& points, const Origin& origin, std::size_t cell, const ElementRequest& request,
@@ -171,6 +210,9 @@ void measure_element(const ElementPoints& points, const Origin& origin, std::siz
   if (request.law) measure_law(points, origin, cell, results);
   if (request.tensors) measure_tensors(points, origin, cell, results);
   if (request.J) results.J[cell] = scalar ? 1 : smallest_J(points);
+  if (request.fibre_stretch) results.fibre_stretch[cell] = fibre_stretch(points, origin.law);
+  if (request.stress_moments) measure_moments(points, origin, cell, results);
+  if (request.volume) measure_volume(points, scalar, cell, results);
   if (request.rotation) results.rotation[cell] = deformation(points, scalar).largest_rotation;
 }
 

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "msml/core/error.hpp"
+#include "solver/combinations.hpp"
 #include "solver/conditions/rigid.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
-#include "solver/elements/split_laws.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::fe {
@@ -26,19 +26,9 @@ Vec3 centre(const Mesh& mesh, int cell) {
 
 std::string place(const Vec3& x) { return fmt::format("({:g} {:g} {:g})", x[0], x[1], x[2]); }
 
-void check_positive(const char* what, double value, bool zero_allowed) {
-  if (!std::isfinite(value) || value < 0 || (!zero_allowed && value == 0))
-    throw Error(fmt::format("{} = {} is not {}", what, value, zero_allowed ? ">= 0" : "> 0"));
-}
-
 void check_region(const Model& model, const Region& region, CellKind& kind, bool& known) {
   const Mesh& mesh = *model.mesh;
   if (!region.law) throw Error(fmt::format("region '{}' has no material law", region.name));
-  if (region.law->incompressible() && model.formulation != Formulation::mixed)
-    throw Error(
-        fmt::format("region '{}': an incompressible {} needs a mesh with formulation=\"mixed\" (quadraticTet). "
-                    "Or give it a bulkModulus or poissonRatio",
-                    region.name, region.law->name()));
   const bool dynamic = is_dynamic(model.settings.integrator);
   if (!std::isfinite(region.density) || region.density < 0 || (dynamic && region.density == 0))
     throw Error(fmt::format("region '{}': massDensity = {} is not {}", region.name, region.density,
@@ -77,7 +67,7 @@ void check_regions(const Model& model) {
     if (point.node < 0 || point.node >= mesh.point_count())
       throw Error(fmt::format("a point mass names node {}, but the mesh has nodes 0 to {}", point.node,
                               mesh.point_count() - 1));
-    check_positive("a point mass", point.mass, false);
+    check_number("a point mass", point.mass, false);
   }
   if (!known && model.point_masses.empty()) throw Error("no region has an element: nothing to simulate");
   int lost = 0, first = -1;
@@ -112,60 +102,6 @@ void check_flat(const Model& model) {
                 dimension(element_kind(model)) == 1 ? "lines lie along x, with the same y and z"
                                                     : "triangles as elements lie in a plane of the same z"));
     }
-}
-
-/// Viscoelasticity and formulations.
-void check_prony(const Model& model, const Region& region) {
-  const Prony& prony = region.prony;
-  if (prony.g.size() != prony.tau.size())
-    throw Error(fmt::format("region '{}': prony has {} values of g and {} of tau: one of each per term", region.name,
-                            prony.g.size(), prony.tau.size()));
-  if (prony.g.empty()) return;
-  double sum = 0;
-  for (std::size_t i = 0; i < prony.g.size(); ++i) {
-    sum += prony.g[i];
-    if (!std::isfinite(prony.g[i]) || prony.g[i] <= 0)
-      throw Error(fmt::format("region '{}': prony: g = {} is not > 0", region.name, prony.g[i]));
-    if (!std::isfinite(prony.tau[i]) || prony.tau[i] <= 0)
-      throw Error(fmt::format("region '{}': prony: tau = {} is not > 0", region.name, prony.tau[i]));
-  }
-  if (sum >= 1) throw Error(fmt::format("region '{}': prony: the sum of g = {} is not < 1", region.name, sum));
-  if (model.plane == Plane::stress || is_scalar(model) || model.formulation != Formulation::standard)
-    throw Error(fmt::format("region '{}': prony is for standard elements in plane strain or 3D", region.name));
-}
-
-void check_features(const Model& model) {
-  const CellKind kind = element_kind(model);
-  if (model.formulation == Formulation::single_rotation && kind != CellKind::tet10)
-    throw Error(fmt::format("formulation = singleRotation is for quadraticTet, the elements are {}", name(kind)));
-  if (model.quadrature != 4 && (model.quadrature != 8 || kind != CellKind::tet10))
-    throw Error(fmt::format("quadrature = {} is not 4, or 8 for quadraticTet", model.quadrature));
-  if (model.quadrature != 4 && model.formulation != Formulation::standard)
-    throw Error("quadrature = 8 needs formulation = standard");
-  for (const Region& region : model.regions) {
-    check_prony(model, region);
-    if (model.formulation == Formulation::standard || region.elements.empty()) continue;
-    if (region.point_law)
-      throw Error(
-          fmt::format("region '{}': a material that varies inside elements needs formulation = standard", region.name));
-  }
-}
-
-/// Which model features fit together.
-void check_plane(const Model& model) {
-  const CellKind kind = element_kind(model);
-  if (!std::isfinite(model.thickness) || model.thickness <= 0)
-    throw Error(fmt::format("thickness = {} is not > 0", model.thickness));
-  if (model.plane == Plane::stress && dimension(kind) != 2)
-    throw Error(fmt::format("plane = stress is for triangles, the elements are {}", name(kind)));
-  const bool scalar = is_scalar(model);
-  for (const Region& region : model.regions)
-    if (!region.elements.empty() && (region.law->components() == 1) != scalar)
-      throw Error(fmt::format("region '{}' has a law of {} and another region one of {}: one kind of problem at a time",
-                              region.name, scalar ? "displacements" : "a scalar unknown",
-                              scalar ? "a scalar unknown" : "displacements"));
-  if (scalar && is_dynamic(model.settings.integrator))
-    throw Error("a scalar problem (diffusion) is stationary: choose timeIntegration=\"static\" or \"quasiStatic\"");
 }
 
 /// Smallest det(dX/dxi) at the quadrature points and the corners, relative to that power of the longest edge.
@@ -225,38 +161,6 @@ void check_shapes(const Model& model) {
                     bad, worst, place(centre(mesh, worst)), smallest, powers[mesh_dimension], hints[mesh_dimension]));
 }
 
-void check_integrator(const Settings& s) {
-  check_positive("beta", s.newmark_beta, false);
-  check_positive("gamma", s.newmark_gamma, true);
-  if (!(s.step_tolerance > 0 && s.step_tolerance < 1))
-    throw Error(fmt::format("stepTolerance = {} is not in (0, 1)", s.step_tolerance));
-  if (s.arc_length.on && s.integrator != Integrator::static_)
-    throw Error(fmt::format("arcLength follows static equilibria, but timeIntegration is {}: choose static",
-                            name(s.integrator)));
-  check_positive("arcSteps", s.arc_length.steps, false);
-  if (!(s.spectral_radius >= 0 && s.spectral_radius <= 1))
-    throw Error(fmt::format("spectralRadius = {} is not in [0, 1]", s.spectral_radius));
-  if (s.integrator != Integrator::newmark || s.allow_unstable) return;
-  if (s.newmark_gamma < 0.5 || 2 * s.newmark_beta < s.newmark_gamma)
-    throw Error(
-        fmt::format("Newmark with beta = {}, gamma = {} grows without bound at some time steps: take gamma >= 1/2 and "
-                    "beta >= gamma/2, or allowUnstable = true",
-                    s.newmark_beta, s.newmark_gamma));
-}
-
-void check_settings(const Settings& s) {
-  check_positive("dampingRayleighRatioMass", s.damping_mass, true);
-  check_positive("dampingRayleighRatioStiffness", s.damping_stiffness, true);
-  check_positive("tolerance", s.tolerance, false);
-  check_positive("linearTolerance", s.linear_tolerance, false);
-  if (s.tolerance >= 1) throw Error(fmt::format("tolerance = {} is not in (0, 1)", s.tolerance));
-  if (s.linear_tolerance >= 1) throw Error(fmt::format("linearTolerance = {} is not in (0, 1)", s.linear_tolerance));
-  check_positive("newtonIterations", s.newton_iterations, false);
-  check_positive("loadSteps", s.load_steps, false);
-  check_positive("threads", s.threads, false);
-  check_integrator(s);
-}
-
 void check_nodes(const Mesh& mesh, const char* what, const std::string& label, const std::vector<int>& nodes,
                  const std::vector<Vec3>& values, bool by_function) {
   for (const int n : nodes)
@@ -311,10 +215,36 @@ void check_spring(const Mesh& mesh, const Spring& spring) {
       throw Error(fmt::format("spring '{}' names node {}, but the mesh has nodes 0 to {}", spring.name, node,
                               mesh.point_count() - 1));
   if (spring.first == spring.second) throw Error(fmt::format("spring '{}' has two ends at one node", spring.name));
-  check_positive(("stiffness of spring '" + spring.name + "'").c_str(), spring.stiffness, true);
-  check_positive(("damping of spring '" + spring.name + "'").c_str(), spring.damping, true);
-  check_positive(("rest length of spring '" + spring.name + "'").c_str(), spring.rest, true);
+  check_number(("stiffness of spring '" + spring.name + "'").c_str(), spring.stiffness, true);
+  check_number(("damping of spring '" + spring.name + "'").c_str(), spring.damping, true);
+  check_number(("rest length of spring '" + spring.name + "'").c_str(), spring.rest, true);
   if (!spring.point.allFinite()) throw Error(fmt::format("spring '{}' has no finite end", spring.name));
+}
+
+void check_inlay(const Model& model, const Inlay& inlay) {
+  const std::string& label = inlay.region.name;
+  if (dimension(element_kind(model)) != 3 || is_scalar(model))
+    throw Error(fmt::format("'{}' embeds a mesh, which needs a body of tetrahedra with displacements", label));
+  if (!inlay.mesh) throw Error(fmt::format("'{}' has no mesh", label));
+  inlay.mesh->check();
+  CellKind kind = CellKind::tet4;
+  bool known = false;
+  Model alone;  // static, where a density of 0 will do
+  alone.mesh = inlay.mesh;
+  alone.settings.integrator = Integrator::static_;
+  check_region(alone, inlay.region, kind, known);
+  if (!known || dimension(kind) != 3) throw Error(fmt::format("the mesh of '{}' has no tetrahedra", label));
+  if (!inlay.region.prony.g.empty()) throw Error(fmt::format("'{}' is elastic: it takes no prony", label));
+  if (inlay.ties.size() != static_cast<std::size_t>(inlay.mesh->point_count()))
+    throw Error(fmt::format("'{}' has {} ties for {} nodes", label, inlay.ties.size(), inlay.mesh->point_count()));
+  const auto nodes = static_cast<std::size_t>(node_count(element_kind(model)));
+  for (const Tie& tie : inlay.ties)
+    if (tie.element >= model.mesh->cell_count() || (tie.element >= 0 && tie.weights.size() != nodes))
+      throw Error(fmt::format("'{}' has a tie to element {} with {} weights", label, tie.element, tie.weights.size()));
+  for (const int e : inlay.region.elements)
+    for (int a = 0; a < node_count(kind); ++a)
+      if (inlay.ties[static_cast<std::size_t>(inlay.mesh->cell(e)[a])].element < 0)
+        throw Error(fmt::format("node {} of '{}' is tied to nothing", inlay.mesh->cell(e)[a], label));
 }
 
 void check_initial(const Model& model, const char* what, const Points& values) {
@@ -325,8 +255,8 @@ void check_initial(const Model& model, const char* what, const Points& values) {
 }
 
 void check_step(const Model& model, const Step& step) {
-  check_positive(("dt of step '" + step.name + "'").c_str(), step.dt, false);
-  check_positive(("iterations of step '" + step.name + "'").c_str(), step.count, false);
+  check_number(("dt of step '" + step.name + "'").c_str(), step.dt, false);
+  check_number(("iterations of step '" + step.name + "'").c_str(), step.count, false);
   if (!step.gravity.allFinite())
     throw Error(fmt::format("gravity of step '{}' is not finite: {}", step.name, place(step.gravity)));
   for (const Prescribed& p : step.prescribed)
@@ -349,11 +279,15 @@ void Model::check() const {
   mesh->check();
   check_settings(settings);
   check_regions(*this);
-  check_plane(*this);
-  check_features(*this);
+  check_elements(*this, element_kind(*this));
+  for (const Region& region : regions) {
+    check_law(*this, region);
+    check_prony(*this, region);
+  }
+  check_problem(*this);
   check_flat(*this);
   check_shapes(*this);
-  check_formulation(*this);
+  for (const Inlay& inlay : inlays) check_inlay(*this, inlay);
   check_initial(*this, "displacement", initial_displacement);
   check_initial(*this, "velocity", initial_velocity);
   if (steps.empty()) throw Error("the simulation has no step");

@@ -118,6 +118,20 @@ struct Face {
   int local = -1;    ///< 0..dimension
 };
 
+/// A place in an element.
+struct Tie {
+  int element = -1;             ///< cell id; -1: nowhere
+  std::vector<double> weights;  ///< of its nodes, with sum 1
+};
+
+/// A second mesh of tetrahedra inside a body of tetrahedra. Its nodes move with the elements of the body that hold
+/// them, so that it has no unknowns of its own; its forces, stiffness and mass come on top of the body's.
+struct Inlay {
+  std::shared_ptr<const Mesh> mesh;
+  Region region;          ///< its elements are cells of this mesh
+  std::vector<Tie> ties;  ///< #points of this mesh; nowhere for points of no element
+};
+
 /// Pressure (positive pushes against the outward normal) or a traction vector on faces.
 struct FaceLoad {
   std::string name;
@@ -216,6 +230,7 @@ struct Model {
   Plane plane = Plane::strain;  ///< of triangles
   double thickness = 1;         ///< of triangles; cross-section of lines
   std::vector<PointMass> point_masses = {};
+  std::vector<Inlay> inlays = {};
   Points initial_displacement = {}, initial_velocity = {};  ///< #points x 3; empty: zero
   std::vector<Step> steps;
   Settings settings;
@@ -246,15 +261,15 @@ struct State {
   double load_factor = 1;             ///< statics: the share of this step's loads that acts
 };
 
-/// Throws Error where the law of a region does not go with the formulation of its model. Looks at nothing else of them.
-void check_law(const Model& model, const Region& region);
-
 /// Which parts of ElementResults are computed; the others stay empty.
 struct ElementRequest {
   bool law = true;       ///< cauchy, strain, energy_density
   bool J = true;         ///< J
   bool rotation = true;  ///< rotation
   bool tensors = false;  ///< deformation_gradient, first_piola, second_piola, green_lagrange
+  bool fibre_stretch = false;
+  bool volume = false;          ///< volume, deformed_volume
+  bool stress_moments = false;  ///< stress_moments
 };
 
 /// What the equations gave at the elements of one state; one entry per mesh cell (zero for cells without unknowns).
@@ -265,10 +280,15 @@ struct ElementResults {
   std::vector<double> energy_density;  ///< #cells, per reference volume
   std::vector<double> J;               ///< #cells, smallest det F of the element
   std::vector<double> rotation;        ///< #cells, angle of the polar rotation in degrees, largest of the element
-  std::vector<double> deformation_gradient;  ///< #cells x 9, F
-  std::vector<double> first_piola;           ///< #cells x 9, P = dW/dF
-  std::vector<double> second_piola;          ///< #cells x 6, F^-1 P
-  std::vector<double> green_lagrange;        ///< #cells x 6, (F^T F - I)/2
+  std::vector<double> deformation_gradient;     ///< #cells x 9, F
+  std::vector<double> first_piola;              ///< #cells x 9, P = dW/dF
+  std::vector<double> second_piola;             ///< #cells x 6, F^-1 P
+  std::vector<double> green_lagrange;           ///< #cells x 6, (F^T F - I)/2
+  std::vector<double> fibre_stretch;            ///< #cells, |F g| of the first family of fibres; 1 where there is none
+  std::vector<double> volume, deformed_volume;  ///< #cells, integrals of 1 and of det F (times thickness)
+  /// #cells x 27: integral of d_j P_iK at 9 j + 3 i + K (3 i + K: xx xy xz yx …), d = F (X - mean of X), in small
+  /// strain X - mean of X.
+  std::vector<double> stress_moments;
 };
 
 /// The check after every run, part of the answer (scene-language, section 4).

@@ -40,6 +40,7 @@ struct Put {
     step.springs.insert(step.springs.end(), springs.begin(), springs.end());
   }
   void operator()(const InitialState&) const {}
+  void operator()(const fe::Inlay&) const {}
 };
 
 void start_with(fe::Model& model, const InitialState& state) {
@@ -146,9 +147,16 @@ void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe
   collect(root, "", placed);
   std::vector<std::vector<fe::Prescribed>> lasting(steps.size());
   for (const Placed& each : placed) {
+    check_unknown(*each.record, body.scalar);
     const Condition condition = make<ConditionBuilder>(*each.record)(body, reporter);
     if (const auto* start = std::get_if<InitialState>(&condition.what)) {
       start_with(model, *start);
+      continue;
+    }
+    if (const auto* inlay = std::get_if<fe::Inlay>(&condition.what)) {
+      if (!each.step.empty() && (steps.size() > 1 || steps.front().name != each.step))
+        refuse(*each.record, fmt::format("forStep = '{}': it acts in all steps; leave forStep out", each.step));
+      model.inlays.push_back(*inlay);
       continue;
     }
     bool acts = each.step.empty();

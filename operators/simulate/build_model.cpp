@@ -36,6 +36,15 @@ void note_gravity(const std::vector<const Record*>& steps, Reporter& reporter) {
 
 }  // namespace
 
+void check_gravity(const Record& step, bool scalar) {
+  const int slot = step.description->find("gravity");
+  if (!scalar || slot < 0 || !step.given[static_cast<std::size_t>(slot)]) return;
+  const Formulas& gravity = step[Key<Formulas>{slot}];
+  if (!std::all_of(gravity.begin(), gravity.end(), [](const Formula& g) { return g.constant() && g.number == 0; }))
+    refuse(step,
+           "gravity has no meaning where the unknown is a number (diffusionMaterial): leave it out, or take 0 0 0");
+}
+
 Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   const Record* found = first_of(args, "object");
   const Record& object = found != nullptr ? *found : args;
@@ -60,7 +69,8 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   body.scalar = fe::is_scalar(model);
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);
-  note_gravity(all_of(args, "step"), reporter);
+  for (const Record* step : all_of(args, "step")) check_gravity(*step, body.scalar);
+  if (!body.scalar) note_gravity(all_of(args, "step"), reporter);
   add_conditions(object, body, reporter, model);
   return simulation;
 }

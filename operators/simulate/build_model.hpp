@@ -29,6 +29,15 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads);
 /// A body of particles has point masses instead; see build_masses.
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
 
+/// Throws Error at the step's place where it gives a gravity other than 0 to a scalar problem.
+void check_gravity(const Record& step, bool scalar);
+
+/// Its label, or "region2" for the second without one.
+std::string region_name(const Record& region, std::size_t position);
+
+/// Throws Error at the material's place where it is no law for elements, or no pointMass for particles.
+void check_material(const Record& material, bool particles);
+
 /// The masses of the particles of a body: the pointMass of the region that each belongs to.
 std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& records, const Body& body,
                                         Reporter& reporter);

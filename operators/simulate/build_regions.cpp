@@ -13,10 +13,6 @@
 namespace msml::simulation {
 namespace {
 
-std::string region_name(const Record& record, std::size_t position) {
-  return record.id.empty() ? fmt::format("region{}", position + 1) : record.id;
-}
-
 /// The region of each cell, -1 = none.
 class Owners {
  public:
@@ -102,6 +98,14 @@ class Owners {
   std::vector<int> owner_;
 };
 
+/// The material of a region, which fits particles or elements.
+const Record& material_of(const Record& region, bool particles) {
+  const Record* material = first_of(region, "material");
+  if (material == nullptr) refuse(region, particles ? "has no pointMass" : "has no material");
+  check_material(*material, particles);
+  return *material;
+}
+
 double density(const Record& region) {
   const Record* given = first_of(region, "mass");
   return given == nullptr ? 1.0 : make<double>(*given);
@@ -109,19 +113,27 @@ double density(const Record& region) {
 
 }  // namespace
 
+std::string region_name(const Record& record, std::size_t position) {
+  return record.id.empty() ? fmt::format("region{}", position + 1) : record.id;
+}
+
+void check_material(const Record& material, bool particles) {
+  if (particles && material.tag() != "pointMass") refuse(material, "is no law for particles: they have a pointMass");
+  if (!particles && material.tag() == "pointMass")
+    refuse(material, "is for a body of particles; elements need a material law");
+}
+
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter) {
   if (records.empty()) throw Error("the object has no region with a material");
   const Owners owners(records, body, reporter);
   std::vector<fe::Region> regions;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const Record* material = first_of(*records[i], "material");
-    if (material == nullptr) refuse(*records[i], "has no material");
-    if (material->tag() == "pointMass") refuse(*material, "is for a body of particles; elements need a material law");
+    const Record& material = material_of(*records[i], false);
     fe::Region region{.name = region_name(*records[i], i),
                       .law = nullptr,
                       .density = density(*records[i]),
                       .elements = owners.elements(i)};
-    set_material(*material, body, region);
+    set_material(material, body, region);
     if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }
@@ -134,13 +146,11 @@ std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& record
   const Owners owners(records, body, reporter);
   std::vector<fe::PointMass> masses;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const Record* material = first_of(*records[i], "material");
-    if (material == nullptr) refuse(*records[i], "has no pointMass");
+    const Record& material = material_of(*records[i], true);
     if (const Record* mass = first_of(*records[i], "mass"))
       refuse(*mass, "has no meaning for particles; their pointMass says it");
-    if (material->tag() != "pointMass") refuse(*material, "is no law for particles: they have a pointMass");
     for (const int element : owners.elements(i))
-      masses.push_back({body.mesh->cell(element)[0], make<double>(*material)});
+      masses.push_back({body.mesh->cell(element)[0], make<double>(material)});
   }
   return masses;
 }

@@ -11,35 +11,52 @@
 namespace msml::simulation {
 namespace {
 
-class EnergiesWriter final : public OutputWriter {
+class EnergiesWriter final : public TableWriter {
  public:
   EnergiesWriter(const OutputRequest& request, const std::filesystem::path& folder)
-      : every_(request.every),
-        file_(folder / (request.id + ".csv"),
-              {"time", "elastic", "kinetic", "external_work", "dissipated", "momentum_x", "momentum_y", "momentum_z",
-               "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "load_factor"}) {}
-
-  bool wants(const fe::State& state) const override { return state.increment % every_ == 0; }
-
-  void write(const fe::State& state, StateFields&) override {
-    const fe::Energies& e = state.energies;
-    const Vec3 &p = e.momentum, &L = e.angular_momentum;
-    file_.add({state.time, e.elastic, e.kinetic, e.external_work, e.dissipated, p[0], p[1], p[2], L[0], L[1], L[2],
-               state.load_factor});
-    last_ = state.increment;
-    file_.save(false);
-  }
-
-  void finish(const fe::State& last, StateFields& fields) override {
-    if (last_ != last.increment) write(last, fields);
-    file_.save(true);
-  }
-
-  Value value() const override { return File{file_.path()}; }
+      : TableWriter(request, folder,
+                    {"time", "elastic", "kinetic", "external_work", "dissipated", "momentum_x", "momentum_y",
+                     "momentum_z", "angular_momentum_x", "angular_momentum_y", "angular_momentum_z", "load_factor"}) {}
 
  private:
-  int every_, last_ = -1;
-  CsvFile file_;
+  std::vector<std::vector<double>> rows(const fe::State& state, StateFields&) const override {
+    const fe::Energies& e = state.energies;
+    const Vec3 &p = e.momentum, &L = e.angular_momentum;
+    return {{state.time, e.elastic, e.kinetic, e.external_work, e.dissipated, p[0], p[1], p[2], L[0], L[1], L[2],
+             state.load_factor}};
+  }
+};
+
+constexpr fe::ElementRequest only_volume{.law = false, .J = false, .rotation = false, .volume = true};
+
+class VolumeWriter final : public TableWriter {
+ public:
+  VolumeWriter(const Simulation& simulation, const OutputRequest& request, const std::filesystem::path& folder)
+      : TableWriter(request, folder, names(simulation.model)), model_(simulation.model) {}
+
+ private:
+  static std::vector<std::string> names(const fe::Model& model) {
+    std::vector<std::string> all{"time"};
+    for (const fe::Region& region : model.regions) all.push_back(region.name);
+    all.push_back("body");
+    return all;
+  }
+
+  std::vector<std::vector<double>> rows(const fe::State& state, StateFields& fields) const override {
+    const std::vector<double> volumes = fields.measure(only_volume).deformed_volume;
+    std::vector<double> numbers{state.time};
+    double body = 0;
+    for (const fe::Region& region : model_.regions) {
+      double sum = 0;
+      for (const int element : region.elements) sum += volumes[static_cast<std::size_t>(element)];
+      numbers.push_back(sum);
+      body += sum;
+    }
+    numbers.push_back(body);
+    return {numbers};
+  }
+
+  const fe::Model& model_;
 };
 
 }  // namespace
@@ -64,6 +81,26 @@ void CsvFile::save(bool at_once) {
   saved_ = std::chrono::steady_clock::now();
 }
 
+TableWriter::TableWriter(const OutputRequest& request, const std::filesystem::path& folder,
+                         const std::vector<std::string>& names)
+    : every_(request.every), file_(folder / (request.id + ".csv"), names) {}
+
+void TableWriter::write(const fe::State& state, StateFields& fields) {
+  for (const std::vector<double>& row : rows(state, fields)) file_.add(row);
+  last_ = state.increment;
+  file_.save(false);
+}
+
+void TableWriter::finish(const fe::State& last, StateFields& fields) {
+  if (last_ != last.increment) write(last, fields);
+  file_.save(true);
+}
+
+std::unique_ptr<OutputWriter> make_volume(const Simulation& simulation, const OutputRequest& request,
+                                          const std::filesystem::path& folder) {
+  return std::make_unique<VolumeWriter>(simulation, request, folder);
+}
+
 std::unique_ptr<OutputWriter> make_energies(const OutputRequest& request, const std::filesystem::path& folder) {
   return std::make_unique<EnergiesWriter>(request, folder);
 }
@@ -72,12 +109,22 @@ std::vector<std::unique_ptr<OutputWriter>> make_writers(const Simulation& simula
                                                         const std::filesystem::path& folder, Reporter& reporter) {
   std::vector<std::unique_ptr<OutputWriter>> writers;
   for (const OutputRequest& request : simulation.outputs) {
-    if (request.kind == OutputKind::probe)
-      writers.push_back(make_probe(simulation, request, reporter, folder));
-    else if (request.kind == OutputKind::energies)
-      writers.push_back(make_energies(request, folder));
-    else
-      writers.push_back(std::make_unique<SeriesWriter>(simulation, request, folder));
+    switch (request.kind) {
+      case OutputKind::probe:
+        writers.push_back(make_probe(simulation, request, reporter, folder));
+        break;
+      case OutputKind::energies:
+        writers.push_back(make_energies(request, folder));
+        break;
+      case OutputKind::section:
+        writers.push_back(make_section(simulation, request, folder));
+        break;
+      case OutputKind::volume:
+        writers.push_back(make_volume(simulation, request, folder));
+        break;
+      case OutputKind::series:
+        writers.push_back(std::make_unique<SeriesWriter>(simulation, request, folder));
+    }
   }
   return writers;
 }

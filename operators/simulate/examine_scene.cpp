@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <memory>
 
+#include "operators/simulate/build_model.hpp"
+#include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
-#include "operators/simulate/settings.hpp"
+#include "solver/combinations.hpp"
+#include "solver/materials/fibres.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::simulation {
@@ -24,67 +27,129 @@ class Silent final : public Reporter {
   void record(const std::string&, const std::string&) override {}
 };
 
+bool varies(const Value& value) {
+  const auto* formula = std::get_if<Formula>(&value);
+  return formula != nullptr && !formula->constant();
+}
+
+/// A direction that names a field of the mesh.
+bool named_direction(const Slot& slot, const Value& value) {
+  const auto* text = std::get_if<std::string>(&value);
+  return slot.unit == "direction" && text != nullptr && fe::direction_numbers(*text).empty();
+}
+
 /// False where an attribute is not known yet: it comes from another task, or differs from place to place.
 bool complete(const Record& record) {
   const auto& slots = record.description->slots();
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    if (slots[i].required && type(record.values[i]) == Type::nothing) return false;
-    const auto* formula = std::get_if<Formula>(&record.values[i]);
-    if (formula && !formula->constant()) return false;
-  }
-  return true;
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    if (varies(record.values[i]) || named_direction(slots[i], record.values[i]) ||
+        (slots[i].required && type(record.values[i]) == Type::nothing))
+      return false;
+  return text_of(record, "fields").empty() || record.description->category() != "material";
 }
 
-/// What the tag builds, or nothing after its fault has been reported at its place.
-template <class Result>
-std::optional<Result> attempt(const Record& record, const Report& fault) {
+/// Hands what `check` throws to `fault`, at the place of the record where it has none of its own.
+template <class Check>
+void attempt(const Record& record, const Report& fault, const Check& check) {
   try {
-    return make<Result>(record);
+    check();
   } catch (const Error& error) {
     fault(Error(error.what(), error.where().line > 0 ? error.where() : record.where, error.failure()));
-    return std::nullopt;
   }
 }
 
-struct Material {
-  const Record* record;
-  LawPtr law;
+/// A region as far as it is known, and the tags it comes from.
+struct Part {
+  fe::Region region;
+  const Record* material = nullptr;
+  const Record* prony = nullptr;
 };
 
-std::vector<Material> materials(const Record& args, const Report& fault) {
-  std::vector<Material> found;
-  for (const Record* record : all_of(args, "material"))
-    if (complete(*record) && record->tag() != "pointMass")
-      if (const auto law = attempt<LawPtr>(*record, fault)) found.push_back({record, *law});
-  return found;
+/// What the object and the solver say, as a model without a mesh.
+struct Outline {
+  fe::Model model;
+  CellKind kind = CellKind::vertex;
+  std::vector<Part> parts;
+};
+
+Part part_of(const Record& record, std::size_t position, bool particles, const Report& fault) {
+  Part part{.region = {.name = region_name(record, position), .law = nullptr},
+            .material = first_of(record, "material"),
+            .prony = first_of(record, "prony")};
+  if (part.prony != nullptr && complete(*part.prony))
+    attempt(*part.prony, fault, [&] { part.region.prony = make<fe::Prony>(*part.prony); });
+  if (part.material == nullptr) return part;
+  const Record& material = *part.material;
+  attempt(material, fault, [&] {
+    check_material(material, particles);
+    if (material.tag() != "pointMass" && complete(material)) part.region.law = make<LawPtr>(material);
+  });
+  if (std::any_of(material.values.begin(), material.values.end(), varies))
+    part.region.point_law = [](std::span<const Vec3>) { return LawPtr(); };
+  return part;
 }
 
-/// Laws that do not go with the formulation of the elements, at the place of the material.
-void examine_formulation(const Record& args, const std::vector<Material>& found, const Report& fault) {
+void read_settings(const Record& args, const Report& fault, fe::Model& model) {
+  const Record* solver = first_of(args, "solver");
+  if (solver == nullptr || !complete(*solver)) return;
+  attempt(*solver, fault, [&] {
+    Silent silent;
+    model.settings = make<SettingsBuilder>(*solver)(silent, 1);
+    fe::check_settings(model.settings);
+  });
+}
+
+Outline outline_of(const Record& args, const Report& fault) {
+  Outline outline;
+  fe::Model& model = outline.model;
   const Record* mesh = first_of(args, "mesh");
-  if (!mesh) return;
-  fe::Model model;
-  model.formulation = formulation_named(text_of(*mesh, "formulation"));
-  for (const Material& material : found) try {
-      check_law(model, {.name = material.record->tag(), .law = material.law});
-    } catch (const Error& error) {
-      fault(Error(error.what(), material.record->where));
-    }
+  if (mesh != nullptr) {
+    const MeshChoice words = words_of_mesh(*mesh);
+    outline.kind = words.kind;
+    model.formulation = words.formulation;
+    model.quadrature = words.quadrature;
+    model.plane = words.plane;
+  }
+  read_settings(args, fault, model);
+  const auto records = all_of(args, "region");
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    outline.parts.push_back(part_of(*records[i], i, mesh != nullptr && outline.kind == CellKind::vertex, fault));
+    model.regions.push_back(outline.parts.back().region);
+  }
+  return outline;
+}
+
+void examine_combinations(const Record& args, const Outline& outline, const Report& fault) {
+  const fe::Model& model = outline.model;
+  if (const Record* mesh = first_of(args, "mesh"))
+    attempt(*mesh, fault, [&] { fe::check_elements(model, outline.kind); });
+  for (const Part& part : outline.parts) {
+    if (part.material != nullptr) attempt(*part.material, fault, [&] { fe::check_law(model, part.region); });
+    if (part.prony != nullptr) attempt(*part.prony, fault, [&] { fe::check_prony(model, part.region); });
+  }
+  const Record* solver = first_of(args, "solver");
+  attempt(solver != nullptr ? *solver : args, fault, [&] { fe::check_problem(model); });
+}
+
+/// Conditions against the unknown of the laws, where a law is known.
+void examine_conditions(const Record& args, const Outline& outline, const Report& fault) {
+  const auto known = std::find_if(outline.parts.begin(), outline.parts.end(),
+                                  [](const Part& part) { return part.region.law != nullptr; });
+  if (known == outline.parts.end()) return;
+  const bool scalar = known->region.law->components() == 1;
+  for (const Record* condition : all_of(args, "constraint"))
+    attempt(*condition, fault, [&] { check_unknown(*condition, scalar); });
+  for (const Record* step : all_of(args, "step")) attempt(*step, fault, [&] { check_gravity(*step, scalar); });
 }
 
 }  // namespace
 
 void examine_scene(const Record& args, const Report& fault) {
-  Silent silent;
-  examine_formulation(args, materials(args, fault), fault);
+  const Outline outline = outline_of(args, fault);
+  examine_combinations(args, outline, fault);
+  examine_conditions(args, outline, fault);
   for (const Record* record : all_of(args, "output"))
-    if (complete(*record)) attempt<OutputRequest>(*record, fault);
-  if (const Record* solver = first_of(args, "solver"))
-    if (const auto settings = attempt<SettingsBuilder>(*solver, fault)) try {
-        (*settings)(silent, 1);
-      } catch (const Error& error) {
-        fault(error);
-      }
+    if (complete(*record)) attempt(*record, fault, [&] { make<OutputRequest>(*record); });
 }
 
 }  // namespace msml::simulation

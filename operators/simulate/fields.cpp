@@ -17,7 +17,9 @@ std::vector<FieldFacts> with_nodal() {
       {"stress", 6, false, "Cauchy's stress"},
       {"vonMises", 1, false, "equivalent stress sqrt(3/2 s:s), s the deviator of stress"},
       {"principalStress", 3, false, "eigenvalues of stress, the largest first"},
-      {"pressure", 1, false, "minus a third of the trace of stress"},
+      {"pressure", 1, false,
+       "minus a third of the trace of stress; of formulation=\"mixed\" at nodes: the unknown, minus the derivative of "
+       "the volumetric energy by its measure of volume"},
       {"firstPiola", 9, false, "first Piola stress: force per reference area"},
       {"secondPiola", 6, false, "second Piola stress F^-1 P"},
       {"strain", 6, false,
@@ -25,7 +27,8 @@ std::vector<FieldFacts> with_nodal() {
       {"greenLagrange", 6, false, "Green-Lagrange strain (F^T F - I)/2"},
       {"deformationGradient", 9, false, "F = dx/dX"},
       {"J", 1, false, "smallest det F of the element"},
-      {"energyDensity", 1, false, "elastic energy per reference volume"}};
+      {"energyDensity", 1, false, "elastic energy per reference volume"},
+      {"fiberStretch", 1, false, "length over reference length of the first family of fibres; 1 where there is none"}};
   const std::size_t count = all.size();
   for (std::size_t i = 0; i < count; ++i)
     if (!all[i].nodal && all[i].name != "J")
@@ -50,9 +53,12 @@ const std::vector<std::string>& field_names() {
   return names;
 }
 
-const FieldFacts& facts_of(const std::string& field) {
-  for (const FieldFacts& facts : all_fields())
-    if (facts.name == field) return facts;
+FieldFacts facts_of(const std::string& field, bool mixed) {
+  for (FieldFacts facts : all_fields()) {
+    if (facts.name != field) continue;
+    facts.nodal = facts.nodal || (mixed && field == "pressure");
+    return facts;
+  }
   throw Error("no field '" + field + "'", {}, Failure::internal);
 }
 

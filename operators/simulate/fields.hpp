@@ -18,8 +18,9 @@ struct FieldFacts {
 const std::vector<FieldFacts>& all_fields();
 /// Their names.
 const std::vector<std::string>& field_names();
-/// The facts of a field; throws an internal Error for another name.
-const FieldFacts& facts_of(const std::string& field);
+/// The facts of a field in a simulation with or without the mixed formulation, where the pressure is an unknown of
+/// nodes; throws an internal Error for another name.
+FieldFacts facts_of(const std::string& field, bool mixed);
 /// Names of the components: "" of a number; x y z; xx yy zz xy yz xz; xx xy xz yx yy yz zx zy zz; 1 2 3 (principal).
 std::vector<std::string> component_names(const FieldFacts& facts);
 

@@ -45,13 +45,6 @@ Description future(const char* tag, const char* category, const char* doc, const
 }
 
 void add_msml_constraints(std::vector<Description>& tags) {
-  tags.push_back(future("supportingMesh", "constraint", "A second mesh embedded in the main one.",
-                        "give its elements a region of their own",
-                        {{"youngModulus", Type::number, "stress"},
-                         {"poissonRatio", Type::number, "ratio"},
-                         {"massDensity", Type::number, "density"},
-                         {"filename", Type::text, "the mesh"},
-                         {"forStep", Type::text, "step"}}));
   tags.push_back(future("shapeMatchingConstraint", "constraint", "Pulls the surface onto a target surface by charges.",
                         "move the surface with displacementConstraint",
                         {{"referenceMesh", Type::mesh, "target surface"},

@@ -59,38 +59,47 @@ std::vector<FormulationName> formulations(CellKind kind) {
   return found;
 }
 
-Key<std::string> add_formulation(Description& tag, CellKind kind) {
+void add_formulation(Description& tag, CellKind kind) {
   std::vector<std::string> names;
   std::string doc;
   for (const FormulationName& each : formulations(kind)) {
     names.emplace_back(each.name);
     doc += (doc.empty() ? "" : "; ") + std::string(each.doc);
   }
-  return tag.parameter<std::string>("formulation", {.fallback = names.front(), .choices = names, .doc = doc});
+  tag.parameter<std::string>("formulation", {.fallback = names.front(), .choices = names, .doc = doc});
 }
 
-fe::Formulation formulation_of(CellKind kind, const std::string& wanted) {
-  for (const FormulationName& each : formulations(kind))
-    if (wanted == each.name) return each.formulation;
-  return fe::Formulation::standard;
-}
+struct KindOfMesh {
+  const char* tag;
+  CellKind kind;
+  const char* doc;
+};
 
-Factory<MeshChoice> kind_of_mesh(const char* tag_name, CellKind kind, const std::string& doc) {
-  Factory<MeshChoice> tag(tag_name, "mesh", doc);
+constexpr KindOfMesh kinds[] = {
+    {"linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."},
+    {"quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points."},
+    {"linearTriangle", CellKind::tri3, "Linear triangles in the plane: constant strain, one point."},
+    {"quadraticTriangle", CellKind::tri6, "Quadratic triangles in the plane: three points."},
+    {"triangularTet", CellKind::tri3, "MSML's older name of linearTriangle."},
+    {"linearLine", CellKind::line2, "Linear elements on a line along x: one point."},
+    {"quadraticLine", CellKind::line3, "Quadratic elements on a line along x: two points."}};
+
+Factory<MeshChoice> kind_of_mesh(const KindOfMesh& facts) {
+  Factory<MeshChoice> tag(facts.tag, "mesh", facts.doc);
+  const CellKind kind = facts.kind;
   const auto mesh = tag.input<Mesh>("mesh", std::string("its ") + msml::name(kind) +
                                                 " cells are the body; other cells are carried along to the results");
-  const auto formulation = add_formulation(tag, kind);
-  Key<std::string> plane, quadrature;
+  add_formulation(tag, kind);
   if (kind == CellKind::tet10)
-    quadrature = tag.parameter<std::string>(
+    tag.parameter<std::string>(
         "quadrature", {.fallback = "4",
                        .choices = {"4", "8"},
                        .doc = "points: 4 integrate straight elements exactly, 8 also the stresses of curved ones"});
   Key<double> thickness;
   if (dimension(kind) == 2) {
-    plane = tag.parameter<std::string>("plane", {.fallback = "strain",
-                                                 .choices = {"strain", "stress"},
-                                                 .doc = "strain: held along z; stress: free to change its thickness"});
+    tag.parameter<std::string>("plane", {.fallback = "strain",
+                                         .choices = {"strain", "stress"},
+                                         .doc = "strain: held along z; stress: free to change its thickness"});
     tag.note("The triangles lie in a plane of constant z and run counter-clockwise seen from +z.");
   }
   if (dimension(kind) < 3)
@@ -104,10 +113,8 @@ Factory<MeshChoice> kind_of_mesh(const char* tag_name, CellKind kind, const std:
     tag.note("The lines lie along x and do not strain across it: their stiffness is lambda + 2 mu.");
   tag.build([=](const Record& record) {
     check_kind(record, record[mesh], kind);
-    MeshChoice choice{
-        .mesh = record.share(mesh), .kind = kind, .formulation = formulation_of(kind, record[formulation])};
-    if (kind == CellKind::tet10 && record[quadrature] == "8") choice.quadrature = 8;
-    if (dimension(kind) == 2 && record[plane] == "stress") choice.plane = fe::Plane::stress;
+    MeshChoice choice = words_of_mesh(record);
+    choice.mesh = record.share(mesh);
     if (dimension(kind) < 3) choice.thickness = record[thickness];
     return choice;
   });
@@ -142,24 +149,22 @@ Factory<MeshChoice> particles() {
 
 }  // namespace
 
-fe::Formulation formulation_named(const std::string& name) {
-  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
-    for (const FormulationName& each : formulations(kind))
-      if (each.name == name) return each.formulation;
-  return fe::Formulation::standard;
+MeshChoice words_of_mesh(const Record& record) {
+  MeshChoice choice{.mesh = nullptr, .kind = CellKind::vertex};
+  for (const KindOfMesh& each : kinds)
+    if (record.tag() == each.tag) choice.kind = each.kind;
+  for (const FormulationName& each : formulations(choice.kind))
+    if (text_of(record, "formulation") == each.name) choice.formulation = each.formulation;
+  if (text_of(record, "quadrature") == "8") choice.quadrature = 8;
+  if (text_of(record, "plane") == "stress") choice.plane = fe::Plane::stress;
+  return choice;
 }
 
 std::vector<Factory<MeshChoice>> mesh_kinds() {
-  return {
-      kind_of_mesh("linearTet", CellKind::tet4, "Linear tetrahedra: constant strain, one point."),
-      kind_of_mesh("quadraticTet", CellKind::tet10, "Quadratic tetrahedra: linear strain, four points."),
-      kind_of_mesh("linearTriangle", CellKind::tri3, "Linear triangles in the plane: constant strain, one point."),
-      kind_of_mesh("quadraticTriangle", CellKind::tri6, "Quadratic triangles in the plane: three points."),
-      kind_of_mesh("triangularTet", CellKind::tri3, "MSML's older name of linearTriangle."),
-      kind_of_mesh("linearLine", CellKind::line2, "Linear elements on a line along x: one point."),
-      kind_of_mesh("quadraticLine", CellKind::line3, "Quadratic elements on a line along x: two points."),
-      particles(),
-  };
+  std::vector<Factory<MeshChoice>> all;
+  for (const KindOfMesh& each : kinds) all.push_back(kind_of_mesh(each));
+  all.push_back(particles());
+  return all;
 }
 
 Factory<double> mass() {

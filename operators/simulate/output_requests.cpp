@@ -87,31 +87,67 @@ Key<Integer> add_every(Factory<OutputRequest>& tag) {
       {.range = closed(1, 1e9), .fallback = 1, .doc = "states 0, every, 2 every, … and the last; load steps count"});
 }
 
-Factory<OutputRequest> probe() {
-  Factory<OutputRequest> tag("probe", "output", "A field at a place or at nodes over time, as a CSV file.");
-  const auto id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
-  const auto point = tag.parameter<std::vector<double>>(
+struct ProbeKeys {
+  Key<std::string> id, field;
+  Key<std::vector<double>> point, along;
+  Key<Integer> count, every;
+};
+
+ProbeKeys describe_probe(Factory<OutputRequest>& tag) {
+  ProbeKeys keys;
+  keys.id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
+  keys.point = tag.parameter<std::vector<double>>(
       "point", {.unit = "length",
                 .optional = true,
                 .counts = {3},
                 .doc = "the place in the reference configuration, inside the body: the field is interpolated there"});
+  keys.along = tag.parameter<std::vector<double>>(
+      "along", {.unit = "length",
+                .optional = true,
+                .counts = {6},
+                .doc = "start and end of a line inside the body, x y z each: a line of the file for each place"});
+  keys.count = tag.parameter<Integer>(
+      "count", {.range = closed(2, 100000), .fallback = 11, .doc = "of along: places, evenly spaced, both ends too"});
   tag.input<IndexSet>("indices", {.optional = true, .doc = "nodes instead of a point: a column for each"});
-  const auto field = tag.parameter<std::string>(
+  keys.field = tag.parameter<std::string>(
       "field", {.fallback = "displacement", .choices = field_names(), .doc = "what is written"});
-  const auto every = add_every(tag);
+  keys.every = add_every(tag);
+  return keys;
+}
+
+Vec3 three_of(const std::vector<double>& numbers, std::size_t first = 0) {
+  return Vec3(numbers[first], numbers[first + 1], numbers[first + 2]);
+}
+
+void place_probe(const Record& record, const ProbeKeys& keys, OutputRequest& request) {
+  const bool nodes = record.given[static_cast<std::size_t>(record.description->find("indices"))];
+  if (nodes + record.is_given(keys.point) + record.is_given(keys.along) != 1)
+    refuse(record, "needs one of point, along and indices");
+  if (record.has(keys.point)) request.point = three_of(record[keys.point]);
+  if (!record.has(keys.along)) return;
+  request.point = three_of(record[keys.along]);
+  request.end = three_of(record[keys.along], 3);
+  request.count = static_cast<int>(record[keys.count]);
+  if (request.end == *request.point) refuse(record, "along starts and ends at one place; for one place there is point");
+}
+
+Factory<OutputRequest> probe() {
+  Factory<OutputRequest> tag("probe", "output",
+                             "A field at a place, along a line or at nodes over time, as a CSV file.");
+  const ProbeKeys keys = describe_probe(tag);
   tag.produces(Type::file);
   tag.note("File: ID.csv, a line of names, then a line per state: the time and the components of the field.");
+  tag.note(
+      "Along a line there are as many lines per state as places, with the distance from its start beside the time.");
   tag.note("At a point, a field given at elements has the value of the element that holds the point.");
   tag.build([=](const Record& record) {
-    const bool nodes = record.given[static_cast<std::size_t>(record.description->find("indices"))];
-    if (record.is_given(point) == nodes) refuse(record, "needs either point or indices");
-    OutputRequest request{.id = file_stem(record, id),
-                          .every = static_cast<int>(record[every]),
-                          .fields = {record[field]},
+    OutputRequest request{.id = file_stem(record, keys.id),
+                          .every = static_cast<int>(record[keys.every]),
+                          .fields = {record[keys.field]},
                           .where = record.where,
                           .kind = OutputKind::probe,
                           .record = &record};
-    if (record.has(point)) request.point = Vec3(record[point][0], record[point][1], record[point][2]);
+    place_probe(record, keys, request);
     return request;
   });
   return tag;
@@ -135,12 +171,62 @@ Factory<OutputRequest> energies() {
   return tag;
 }
 
+Factory<OutputRequest> section() {
+  Factory<OutputRequest> tag("section", "output", "Area, force and moment on a plane through the body, as a CSV file.");
+  const auto id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
+  const auto point = tag.parameter<std::vector<double>>(
+      "point", {.unit = "length", .counts = {3}, .doc = "a place of the plane, in the reference configuration"});
+  const auto normal = tag.parameter<std::vector<double>>(
+      "normal", {.counts = {3}, .doc = "of the plane in the reference configuration, of any length but 0"});
+  const auto every = add_every(tag);
+  tag.produces(Type::file);
+  tag.note(
+      "File: ID.csv with the columns time, area (of the deformed section), the force that the body on the side of the "
+      "normal exerts on the other side (in tension along the normal), and its moment about the deformed section's "
+      "centroid.");
+  tag.note(
+      "The force is the work of the stress on the elements that the plane cuts, as their corners on the side of the "
+      "normal move by one unit: it balances the loads and reactions of that side. So does the moment "
+      "of quadratic elements; that of linear ones differs in second order of their size.");
+  tag.build([=](const Record& record) {
+    OutputRequest request{.id = file_stem(record, id),
+                          .every = static_cast<int>(record[every]),
+                          .fields = {},
+                          .where = record.where,
+                          .kind = OutputKind::section,
+                          .point = three_of(record[point]),
+                          .normal = three_of(record[normal]),
+                          .record = &record};
+    if (!(request.normal.norm() > 0)) refuse(record, "normal has no direction: at least one number is not 0");
+    return request;
+  });
+  return tag;
+}
+
+Factory<OutputRequest> volume() {
+  Factory<OutputRequest> tag("volume", "output", "Volumes of the regions over time, as a CSV file.");
+  const auto id = tag.parameter<std::string>("id", {.doc = "name of the file, and what ${id} refers to"});
+  const auto every = add_every(tag);
+  tag.produces(Type::file);
+  tag.note("File: ID.csv with the columns time, the deformed volume of each region, and that of the body.");
+  tag.build([=](const Record& record) {
+    return OutputRequest{.id = file_stem(record, id),
+                         .every = static_cast<int>(record[every]),
+                         .fields = {},
+                         .where = record.where,
+                         .kind = OutputKind::volume};
+  });
+  return tag;
+}
+
 }  // namespace
 
 bool OutputRequest::wants(const std::string& field) const {
   return std::find(fields.begin(), fields.end(), field) != fields.end();
 }
 
-std::vector<Factory<OutputRequest>> outputs() { return {displacement(), result(), probe(), energies()}; }
+std::vector<Factory<OutputRequest>> outputs() {
+  return {displacement(), result(), probe(), energies(), section(), volume()};
+}
 
 }  // namespace msml::simulation

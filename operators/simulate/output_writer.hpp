@@ -48,10 +48,34 @@ class CsvFile {
   std::chrono::steady_clock::time_point saved_{};
 };
 
+/// A request that becomes lines of a CSV file for each state it wants.
+class TableWriter : public OutputWriter {
+ public:
+  TableWriter(const OutputRequest& request, const std::filesystem::path& folder, const std::vector<std::string>& names);
+  bool wants(const fe::State& state) const override { return state.increment % every_ == 0; }
+  void write(const fe::State& state, StateFields& fields) override;
+  void finish(const fe::State& last, StateFields& fields) override;
+  Value value() const override { return File{file_.path()}; }
+
+ protected:
+  /// The lines of a state, mostly one, with one number per name.
+  virtual std::vector<std::vector<double>> rows(const fe::State& state, StateFields& fields) const = 0;
+
+ private:
+  int every_, last_ = -1;
+  CsvFile file_;
+};
+
 /// A field at a place or at nodes over time: ID.csv.
 std::unique_ptr<OutputWriter> make_probe(const Simulation& simulation, const OutputRequest& request, Reporter& reporter,
                                          const std::filesystem::path& folder);
 /// Energies, work and momentum over time: ID.csv.
 std::unique_ptr<OutputWriter> make_energies(const OutputRequest& request, const std::filesystem::path& folder);
+/// Area, force and moment on a plane over time: ID.csv. Throws Error where the plane misses the body.
+std::unique_ptr<OutputWriter> make_section(const Simulation& simulation, const OutputRequest& request,
+                                           const std::filesystem::path& folder);
+/// Volumes of the regions over time: ID.csv.
+std::unique_ptr<OutputWriter> make_volume(const Simulation& simulation, const OutputRequest& request,
+                                          const std::filesystem::path& folder);
 
 }  // namespace msml::simulation

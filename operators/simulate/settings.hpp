@@ -25,8 +25,9 @@ struct MeshChoice {
 /// throws Error unless all cells of that dimension are of the kind, and there are some.
 std::vector<Factory<MeshChoice>> mesh_kinds();
 
-/// The formulation of that name, whatever the elements; standard for a name that is none.
-fe::Formulation formulation_named(const std::string& name);
+/// What the tag of a mesh says, without the mesh and the thickness: kind (vertex of particles), formulation, quadrature
+/// and plane.
+MeshChoice words_of_mesh(const Record& record);
 
 /// The tag `mass`: mass per reference volume.
 Factory<double> mass();
@@ -43,8 +44,9 @@ Factory<SettingsBuilder> solver();
 /// A step without conditions.
 Factory<fe::Step> step();
 
-/// series: the deformed mesh with fields; probe: a field at a place; energies: sums over the body.
-enum class OutputKind { series, probe, energies };
+/// series: the deformed mesh with fields; probe: a field at a place; energies: sums over the body; section: area, force
+/// and moment on a plane; volume: of the regions.
+enum class OutputKind { series, probe, energies, section, volume };
 
 /// What is written of a simulation.
 struct OutputRequest {
@@ -53,11 +55,16 @@ struct OutputRequest {
   std::vector<std::string> fields;  ///< in the order written; of a series always with "displacement"; of a probe one
   Location where;
   OutputKind kind = OutputKind::series;
-  std::optional<Vec3> point;       ///< of a probe: a place in the reference configuration; else its indices count
-  const Record* record = nullptr;  ///< of a probe: its tag
+  /// Of a probe, a place in the reference configuration, or the start of a line (absent: its indices count); of a
+  /// section.
+  std::optional<Vec3> point;
+  Vec3 end = Vec3::Zero();         ///< of the line of a probe
+  int count = 1;                   ///< of a probe: places on the line
+  Vec3 normal = Vec3::UnitX();     ///< of a section, of any length but 0
+  const Record* record = nullptr;  ///< of a probe or section: its tag
   bool wants(const std::string& field) const;
 };
-/// `displacement` (as in MSML), `result` (any fields), `probe` and `energies`.
+/// `displacement` (as in MSML), `result` (any fields), `probe`, `energies`, `section` and `volume`.
 std::vector<Factory<OutputRequest>> outputs();
 
 /// Tags of the language that parse but are refused for now.

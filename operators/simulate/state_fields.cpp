@@ -10,6 +10,8 @@
 namespace msml::simulation {
 namespace {
 
+constexpr fe::ElementRequest only_fibre_stretch{.law = false, .J = false, .rotation = false, .fibre_stretch = true};
+
 std::vector<double> rows(const Points& points) { return {points.data(), points.data() + points.size()}; }
 
 }  // namespace
@@ -92,6 +94,7 @@ std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "greenLagrange") return tensors().green_lagrange;
   if (name == "deformationGradient") return tensors().deformation_gradient;
   if (name == "J") return J();
+  if (name == "fiberStretch") return measurer_.measure(state_, only_fibre_stretch).fibre_stretch;
   throw Error("no field '" + name + "'", {}, Failure::internal);
 }
 
@@ -100,7 +103,8 @@ std::vector<double> StateFields::recovered(const std::string& name) {
   const auto stress = [&] { return fe::recover_at_nodes(model_, law().cauchy, 6); };
   if (name == "vonMises") return von_mises(stress());
   if (name == "principalStress") return principal_values(stress());
-  return fe::recover_at_nodes(model_, at_elements(name), facts_of(name).components);
+  return fe::recover_at_nodes(model_, name == "pressure" ? pressure_of(law().cauchy) : at_elements(name),
+                              facts_of(name, mixed()).components);
 }
 
 std::vector<double> StateFields::nodal(const std::string& name) {
@@ -109,18 +113,19 @@ std::vector<double> StateFields::nodal(const std::string& name) {
   if (name == "velocity") return rows(state_.velocity);
   if (name == "acceleration") return rows(state_.acceleration);
   if (name == "reaction") return rows(state_.reaction);
+  if (name == "pressure") return state_.pressure;
   return recovered(name.substr(0, name.size() - std::string("_nodal").size()));
 }
 
 Field StateFields::field(const std::string& name) {
-  const FieldFacts& facts = facts_of(name);
+  const FieldFacts facts = facts_of(name, mixed());
   return {name, facts.components, facts.nodal ? nodal(name) : at_elements(name)};
 }
 
 void StateFields::add_to(Mesh& mesh, const std::string& name) {
   if (name == "region") return;
   if (name == "displacement" && body_.scalar) return add_to(mesh, "value");
-  (facts_of(name).nodal ? mesh.point_fields : mesh.cell_fields).push_back(field(name));
+  (facts_of(name, mixed()).nodal ? mesh.point_fields : mesh.cell_fields).push_back(field(name));
 }
 
 }  // namespace msml::simulation

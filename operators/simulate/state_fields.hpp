@@ -23,8 +23,11 @@ class StateFields {
   /// Adds a field to the points or cells of a mesh with the body's points and cells. "region" adds nothing, since
   /// meshes carry it anyway; scalar problems add "value" in the place of "displacement".
   void add_to(Mesh& mesh, const std::string& name);
+  /// Of all cells, what a request for measures of the elements asks for.
+  fe::ElementResults measure(const fe::ElementRequest& request) const { return measurer_.measure(state_, request); }
 
  private:
+  bool mixed() const { return model_.formulation == fe::Formulation::mixed; }
   Points displacement() const;
   std::vector<double> scalar() const;
   const fe::ElementResults& law();

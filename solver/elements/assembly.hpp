@@ -23,7 +23,7 @@ struct Numbering {
   std::vector<int> node_of;        ///< mesh point of each numbered node
   std::vector<int> number_of;      ///< number of each mesh point, -1 without unknowns
   std::vector<int> element_nodes;  ///< numbers of the nodes of `elements`, element after element
-  std::vector<std::array<int, 2>> links;  ///< pairs of numbered nodes that springs join
+  std::vector<std::array<int, 2>> links;  ///< pairs of numbered nodes that springs or inlays join
   /// Mixed elements: mesh point of each additional node. These come after the nodes of the body; their first component
   /// is a pressure, see pressure_scale, and the other two are fixed at zero.
   std::vector<int> pressure_of;

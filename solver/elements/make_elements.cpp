@@ -2,6 +2,7 @@
 // Chooses the elements of a model by mesh kind and formulation.
 #include <algorithm>
 
+#include "solver/elements/inlaid_elements.hpp"
 #include "solver/elements/mixed_elements.hpp"
 #include "solver/elements/no_elements.hpp"
 #include "solver/elements/patch_elements.hpp"
@@ -31,6 +32,13 @@ std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
   }
 }
 
+std::unique_ptr<Elements> elements_of_body(const Model& model) {
+  if (model.formulation == Formulation::single_rotation) return make_single_rotation_elements(model);
+  if (model.formulation == Formulation::mixed) return std::make_unique<MixedElements>(model);
+  if (model.formulation == Formulation::fbar) return std::make_unique<PatchElements>(model);
+  return standard_elements(model, element_kind(model));
+}
+
 }  // namespace
 
 CellKind element_kind(const Model& model) {
@@ -51,10 +59,8 @@ int components(const Model& model) {
 }
 
 std::unique_ptr<Elements> make_elements(const Model& model) {
-  if (model.formulation == Formulation::single_rotation) return make_single_rotation_elements(model);
-  if (model.formulation == Formulation::mixed) return std::make_unique<MixedElements>(model);
-  if (model.formulation == Formulation::fbar) return std::make_unique<PatchElements>(model);
-  return standard_elements(model, element_kind(model));
+  std::unique_ptr<Elements> body = elements_of_body(model);
+  return model.inlays.empty() ? std::move(body) : make_inlaid_elements(model, std::move(body));
 }
 
 }  // namespace msml::fe

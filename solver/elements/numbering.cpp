@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "solver/elements/assembly.hpp"
+#include "solver/elements/inlaid_elements.hpp"
 
 namespace msml::fe {
 namespace {
@@ -113,6 +114,8 @@ Numbering number(const Model& model) {
     for (int a = 0; a < nodes; ++a)
       numbering.element_nodes.push_back(numbering.number_of[static_cast<std::size_t>(mesh.cell(e)[a])]);
   add_loose_parts(model, numbering);
+  const auto links = inlay_links(model, numbering);
+  numbering.links.insert(numbering.links.end(), links.begin(), links.end());
   if (model.formulation == Formulation::mixed) add_pressure_nodes(numbering, nodes);
   return numbering;
 }

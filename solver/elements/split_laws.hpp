@@ -15,10 +15,7 @@ struct BatchSplit {
   Lanes compliance;  ///< 1 / modulus
 };
 
-/// The laws of up to eight elements of a region, lane k for element k. The model has passed check_formulation.
+/// The laws of up to eight elements of a region, lane k for element k. Each has passed check_law.
 BatchSplit split_of(const Region& region, std::span<const int> elements);
-
-/// Throws Error where the formulation does not fit the elements, the laws or the solver.
-void check_formulation(const Model& model);
 
 }  // namespace msml::fe

@@ -32,6 +32,15 @@ struct Explicit {
     run.newton.move(damping_velocity, a, damped ? &C : nullptr);
   }
 
+  /// Dampers are no multiple of M and K, but no motion is damped more than the one with the largest eigenvalue of C.
+  /// For forward Euler, which lives on damping, they do not count.
+  double limit_of(double largest, const Mask& fixed) const {
+    const Settings& s = run.model.settings;
+    if (!run.equations.has_dampers() || s.integrator == Integrator::forward_euler)
+      return stable_step(s.integrator, largest, s.damping_mass, s.damping_stiffness);
+    return stable_step(s.integrator, largest, s.damping_mass + largest_eigenvalue(C, run.equations.mass(), fixed), 0);
+  }
+
   /// False if dt is too large for the present stiffness and the scene does not allow that.
   bool stable(const Step& step, const Mask& fixed, const ScaledLoads& loads) {
     const Settings& settings = run.model.settings;
@@ -39,7 +48,7 @@ struct Explicit {
     BlockMatrix K(C.pattern);
     run.newton.stiffness(run.now.u, loads, K);
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
-    const double limit = stable_step(settings.integrator, largest, settings.damping_mass, settings.damping_stiffness);
+    const double limit = limit_of(largest, fixed);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
     if (step.dt <= limit * (1 + 1e-6)) return true;
     refuse(step, limit, std::sqrt(largest));

@@ -124,9 +124,10 @@ MaterialFactory guccione_material() {
   const auto bt = material.parameter("bt", {.range = positive(), .doc = "across the fibres"});
   const auto bfs = material.parameter("bfs", {.range = positive(), .doc = "in shear between along and across"});
   const auto fiber = describe_direction(material, "fiber", false, "direction of the fibres");
-  describe_direction(material, "sheet", true,
-                     "direction of the sheets; Q does not depend on it, so it is read and left alone");
   const VolumeKeys keys = describe_volume(material);
+  material.note(
+      "This is the transversely isotropic form of 1991: Q is the same whichever way the sheets lie, so there is no "
+      "attribute sheet.");
   material.note(field_note);
   material.build([=](const Record& record) {
     const Guccione<Lanes> kernel{lanes_of(record[C]), lanes_of(record[bf]), lanes_of(record[bt]), lanes_of(record[bfs]),

@@ -80,6 +80,7 @@ struct TransverselyIsotropic {
   T mu, k1, k2;
   Direction<T> g;
 
+  const Direction<T>& fibre() const { return g; }
   Variables variables(const Invariants<T>& of) const { return {of, g, g}; }
   Jet<T, 4> operator()(const Variables& x) const {
     const T j = x.j.value, J = 1.0 + j;
@@ -103,6 +104,7 @@ struct HolzapfelGasserOgden {
   T second;  ///< 1, or 0 where there is one fibre only
   Direction<T> g1, g2;
 
+  const Direction<T>& fibre() const { return g1; }
   Variables variables(const Invariants<T>& of) const { return {of, g1, g2}; }
   Jet<T, 4> operator()(const Variables& x) const {
     const T j = x.j.value, shrunk = exp1m(T(-2.0 / 3 * ln1p(j))), q = 1.0 + shrunk, r = q / (1.0 + j);

@@ -71,6 +71,7 @@ struct Guccione {
   T C, bf, bt, bfs;
   Direction<T> g;
 
+  const Direction<T>& fibre() const { return g; }
   Variables variables(const Invariants<T>& of) const { return {of, g}; }
   Jet<T, 4> operator()(const Variables& x) const {
     const Jet<T, 4> Q = scale<T>(bt, x.q) + scale<T>(2.0 * (bfs - bt), x.h) + scale<T>(bf + bt - 2.0 * bfs, x.e * x.e);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The interface of a constitutive law: batches of points in, energies, stresses and tangents out.
 #pragma once
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -68,6 +69,8 @@ class Law {
   virtual bool incompressible() const { return false; }
   /// True if the response is the same in all directions; otherwise the moduli above are typical ones.
   virtual bool isotropic() const { return true; }
+  /// The unit vector along the first family of fibres in the reference configuration; nothing where there are none.
+  virtual std::optional<std::array<Lanes, 3>> fibre() const { return std::nullopt; }
   /// The law whose lane k has the parameters of others[k], all of them of this kind; null where it cannot be made.
   virtual std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> /*others*/) const { return {}; }
   /// Unknowns per node: 3 displacements, or 1 for a scalar problem, whose gradient is row 0 of H.

@@ -42,6 +42,7 @@ class PlaneStress final : public Law {
   bool exact_tangent() const override { return law_->exact_tangent(); }
   bool survives_inversion() const override { return law_->survives_inversion(); }
   bool isotropic() const override { return law_->isotropic(); }
+  std::optional<std::array<Lanes, 3>> fibre() const override { return law_->fibre(); }
   bool small_strain() const override { return law_->small_strain(); }
 
  private:

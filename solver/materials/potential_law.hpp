@@ -89,6 +89,12 @@ class PotentialLaw final : public Law, public StretchLaw {
   bool survives_inversion() const override { return facts_.survives_inversion; }
   bool isotropic() const override { return facts_.isotropic; }
   bool incompressible() const override { return facts_.incompressible; }
+  std::optional<std::array<Lanes, 3>> fibre() const override {
+    if constexpr (requires { kernel_.fibre(); })
+      return kernel_.fibre();
+    else
+      return std::nullopt;
+  }
 
   Jet<Nilpotent, 3> of_stretches([[maybe_unused]] const Nilpotent (&s)[3], [[maybe_unused]] int lane) const override {
     using Variables = typename Kernel<Nilpotent>::Variables;

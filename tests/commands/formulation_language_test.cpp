@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Materials and formulations of the real language that do not go together: text in, message out.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/commands/real_language.hpp"
@@ -7,34 +8,150 @@
 namespace msml {
 namespace {
 
-/// Faults of a scene with this mesh tag and, on line 2, this material.
-std::string faults(const std::string& mesh, const std::string& material) {
+using testing::HasSubstr;
+
+/// What a scene says about one box; each part stands on a line of its own, from line 2 on.
+struct Parts {
+  std::string mesh = R"(<linearTet mesh="${b}"/>)";
+  std::string region = R"(<linearElasticMaterial youngModulus="1" poissonRatio="0.3"/>)";
+  std::string solver = R"(<solver timeIntegration="static"/>)";
+  std::string constraint = "";
+  std::string step = R"(<step gravity="0 0 0"/>)";
+};
+
+/// Its faults, line by line.
+std::string faults(const Parts& parts) {
   const std::string scene =
-      "<msml><scene><object><mesh>" + mesh + "</mesh><material><region indices=\"${i}\">\n" + material +
-      "</region></material></object></scene><workflow><GenerateBoxMesh id=\"b\" size=\"1 1 1\" divisions=\"1 1 1\"/>"
+      "<msml><scene><object><mesh>\n" + parts.mesh + "\n</mesh><material><region indices=\"${i}\">\n" + parts.region +
+      "\n</region></material><constraints><constraint>\n" + parts.constraint +
+      "\n</constraint></constraints></object></scene><environment>\n" + parts.solver + "\n<simulation>" + parts.step +
+      "</simulation></environment><workflow><GenerateBoxMesh id=\"b\" size=\"1 1 1\" divisions=\"1 1 1\"/>"
       "<ComputeIndicesFromBoxROI id=\"i\" mesh=\"${b}\" select=\"points\" box=\"0 0 0 1 1 1\"/></workflow></msml>";
   return tiny::lines(
       compile_text(scene, "/nonexistent/s.xml", real_language(), {.output_folder = "/nonexistent"}).faults);
 }
 
+std::string faults(const std::string& mesh, const std::string& region) {
+  return faults(Parts{.mesh = mesh, .region = region});
+}
+
+constexpr const char* diffusion = R"(<diffusionMaterial coefficient="1"/>)";
+constexpr const char* elastic = R"(<linearElasticMaterial youngModulus="1" poissonRatio="0.3"/>)";
+constexpr const char* relaxing =
+    R"(<linearElasticMaterial youngModulus="1" poissonRatio="0.3"/><prony g="0.5" tau="1"/>)";
+
 TEST(FormulationLanguage, LawsWithoutAVolumetricPartAreRefusedBeforeAnythingRuns) {
   const std::string law = "<stVenantKirchhoffMaterial youngModulus=\"1\" poissonRatio=\"0.3\"/>";
   EXPECT_EQ(faults("<linearTet mesh=\"${b}\"/>", law), "");
   EXPECT_NE(faults("<linearTet mesh=\"${b}\" formulation=\"fbar\"/>", law)
-                .find("s.xml:2: region 'stVenantKirchhoffMaterial': stVenantKirchhoffMaterial has no volumetric part"),
+                .find("s.xml:4: region 'region1': stVenantKirchhoffMaterial has no volumetric part"),
             std::string::npos);
 }
 
 TEST(FormulationLanguage, IncompressibleLawsNeedAPressure) {
   const std::string law = "<neoHookeanMaterial youngModulus=\"1\" form=\"isochoric\" incompressible=\"true\"/>";
   EXPECT_EQ(faults("<quadraticTet mesh=\"${b}\" formulation=\"mixed\"/>", law), "");
-  EXPECT_NE(faults("<quadraticTet mesh=\"${b}\"/>", law).find("needs quadraticTet with formulation=\"mixed\""),
+  EXPECT_NE(faults("<quadraticTet mesh=\"${b}\"/>", law).find("needs a mesh with formulation=\"mixed\""),
             std::string::npos);
 }
 
 TEST(FormulationLanguage, MaterialsThatCannotBeBuiltAreRefusedBeforeAnythingRuns) {
-  EXPECT_NE(faults("<linearTet mesh=\"${b}\"/>", "<neoHookeanMaterial youngModulus=\"1\"/>").find("s.xml:2: "),
+  EXPECT_NE(faults("<linearTet mesh=\"${b}\"/>", "<neoHookeanMaterial youngModulus=\"1\"/>").find("s.xml:4: "),
             std::string::npos);
+}
+
+TEST(FormulationLanguage, DirectionsMayNameAFieldThatTheMeshWillHave) {
+  EXPECT_EQ(faults(Parts{.region = R"(<transverselyIsotropicMaterial youngModulus="1" poissonRatio="0.3" k1="1" )"
+                                   R"(fiber="fibres"/>)"}),
+            "");
+}
+
+TEST(FormulationLanguage, QuadratureOfEightPointsIsForStandardElements) {
+  EXPECT_THAT(faults(R"(<quadraticTet mesh="${b}" formulation="singleRotation" quadrature="8"/>)", elastic),
+              HasSubstr("s.xml:2: quadrature = 8 needs formulation = standard, but it is singleRotation"));
+}
+
+TEST(FormulationLanguage, ASingleRotationIsForCorotatedElasticity) {
+  EXPECT_THAT(faults(R"(<quadraticTet mesh="${b}" formulation="singleRotation"/>)",
+                     R"(<stVenantKirchhoffMaterial youngModulus="1" poissonRatio="0.3"/>)"),
+              HasSubstr("s.xml:4: region 'region1': formulation = singleRotation is for linearElasticMaterial"));
+}
+
+TEST(FormulationLanguage, ExpressionsInsideElementsNeedStandardOnes) {
+  const std::string law = R"(<linearElasticMaterial youngModulus="1 + X" poissonRatio="0.3"/>)";
+  EXPECT_EQ(faults(R"(<linearTet mesh="${b}"/>)", law), "");
+  EXPECT_THAT(faults(R"(<linearTet mesh="${b}" formulation="fbar"/>)", law),
+              HasSubstr("s.xml:4: region 'region1': a material with expressions in X, Y, Z varies inside elements"));
+}
+
+TEST(FormulationLanguage, PlaneStressIsAboutDisplacements) {
+  EXPECT_THAT(faults(R"(<linearTriangle mesh="${b}" plane="stress"/>)", diffusion),
+              HasSubstr("s.xml:4: region 'region1': plane=\"stress\" is about displacements"));
+}
+
+TEST(FormulationLanguage, PronyIsForStandardElementsInPlaneStrainOrSpace) {
+  EXPECT_EQ(faults(R"(<linearTet mesh="${b}"/>)", relaxing), "");
+  for (const char* formulation : {"mixed", "singleRotation"})
+    EXPECT_THAT(
+        faults("<quadraticTet mesh=\"${b}\" formulation=\"" + std::string(formulation) + "\"/>", relaxing),
+        HasSubstr("s.xml:4: region 'region1': prony does not go with formulation=\"" + std::string(formulation)));
+  EXPECT_THAT(faults(R"(<linearTet mesh="${b}" formulation="fbar"/>)", relaxing),
+              HasSubstr("prony does not go with formulation=\"fbar\""));
+  EXPECT_THAT(faults(R"(<linearTriangle mesh="${b}" plane="stress"/>)", relaxing),
+              HasSubstr("prony does not go with plane=\"stress\""));
+  EXPECT_THAT(faults(Parts{.region = relaxing, .solver = R"(<solver timeIntegration="static" arcLength="true"/>)"}),
+              HasSubstr("prony needs time"));
+  EXPECT_THAT(faults(Parts{.region = std::string(diffusion) + R"(<prony g="0.5" tau="1"/>)"}),
+              HasSubstr("prony is for stresses"));
+}
+
+TEST(FormulationLanguage, ScalarProblemsAreStationary) {
+  EXPECT_EQ(faults(Parts{.region = diffusion}), "");
+  EXPECT_THAT(faults(Parts{.region = diffusion, .solver = R"(<solver timeIntegration="Newmark"/>)"}),
+              HasSubstr("s.xml:8: a scalar problem (diffusionMaterial) is stationary, but timeIntegration is Newmark"));
+}
+
+TEST(FormulationLanguage, ConditionsAreOfTheUnknownOfTheLaws) {
+  const std::string held = R"(<fixedConstraint indices="${i}"/>)", value = R"(<fixedValue indices="${i}" value="1"/>)";
+  EXPECT_EQ(faults(Parts{.constraint = held}), "");
+  EXPECT_EQ(faults(Parts{.region = diffusion, .constraint = value}), "");
+  EXPECT_THAT(faults(Parts{.region = diffusion, .constraint = held}),
+              HasSubstr("s.xml:6: fixedConstraint: is for displacements, but the regions have diffusionMaterial"));
+  EXPECT_THAT(faults(Parts{.constraint = value}), HasSubstr("s.xml:6: fixedValue: is for scalar problems"));
+  EXPECT_THAT(faults(Parts{.region = diffusion, .step = R"(<step gravity="1 0 0"/>)"}),
+              HasSubstr("step: gravity has no meaning where the unknown is a number"));
+}
+
+TEST(FormulationLanguage, MixedElementsNeedEquationsAndADirectSolver) {
+  const std::string mesh = R"(<quadraticTet mesh="${b}" formulation="mixed"/>)";
+  EXPECT_THAT(faults(Parts{.mesh = mesh, .solver = R"(<solver timeIntegration="centralDifference"/>)"}),
+              HasSubstr("s.xml:8: timeIntegration=\"centralDifference\" is explicit, but the pressure"));
+  EXPECT_THAT(faults(Parts{.mesh = mesh, .solver = R"(<solver timeIntegration="static" linearSolver="CG"/>)"}),
+              HasSubstr("s.xml:8: linearSolver=\"CG\" needs a positive definite matrix"));
+}
+
+TEST(FormulationLanguage, StepControlFitsTheIntegrator) {
+  EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="quasiStatic" arcLength="true"/>)"}),
+              HasSubstr("s.xml:8: arcLength follows static equilibria, but timeIntegration is quasiStatic"));
+  EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="symplecticEuler" adaptiveStep="true"/>)"}),
+              HasSubstr("s.xml:8: adaptiveStep = true does not go with the explicit timeIntegration"));
+  EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="static" arcLength="true" adaptiveStep="true"/>)"}),
+              HasSubstr("s.xml:8: adaptiveStep = true does not go with arcLength"));
+  EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="Newmark" beta="0.1"/>)"}),
+              HasSubstr("s.xml:8: Newmark with beta = 0.1"));
+}
+
+TEST(FormulationLanguage, ClampedLawsAreIsotropic) {
+  EXPECT_THAT(faults(R"(<linearTet mesh="${b}"/>)", R"(<mooneyRivlinMaterial c1="1" )"
+                                                    R"(incompressible="true" inversion="clamped"/>)"),
+              HasSubstr("exclude each other"));
+}
+
+TEST(FormulationLanguage, ParticlesHaveMassesAndElementsHaveLaws) {
+  EXPECT_THAT(faults(R"(<linearTet mesh="${b}"/>)", R"(<pointMass mass="1"/>)"),
+              HasSubstr("s.xml:4: pointMass: is for a body of particles"));
+  EXPECT_THAT(faults(R"(<particles mesh="${b}"/>)", elastic),
+              HasSubstr("s.xml:4: linearElasticMaterial: is no law for particles"));
 }
 
 }  // namespace

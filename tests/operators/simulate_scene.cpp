@@ -12,7 +12,8 @@
 
 namespace msml::operators {
 void add_scene_descriptions(Registry& registry);
-}
+Operator simulate();
+}  // namespace msml::operators
 
 namespace msml::test {
 namespace {
@@ -136,6 +137,49 @@ Scene cube(const Language& language) {
       language.tag("step", "step", {{"name", std::string("initial")}, {"gravity", std::vector<double>{0, 0, 0}}})};
   return scene;
 }
+
+Scene pulled(const Language& language, const Record& output) {
+  Scene scene = cube(language);
+  std::vector<int> all(static_cast<std::size_t>(scene.mesh->cell_count()));
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  scene.regions = {region(language, "a", index_set(scene.mesh, Indexed::elements, all), 1000, 0.3, "small")};
+  for (int k = 0; k < 3; ++k) {
+    Numbers normal{0, 0, 0};
+    normal[static_cast<std::size_t>(k)] = 1;
+    scene.constraints.push_back(
+        condition(language, "symmetryPlane", {{"indices", points_at(scene.mesh, k, 0)}, {"normal", normal}}));
+  }
+  scene.constraints.push_back(condition(language, "surfaceTraction",
+                                        {{"indices", points_at(scene.mesh, 2, 1)}, {"traction", Numbers{0, 0, 10}}}));
+  scene.solver["loadSteps"] = Integer{2};
+  scene.outputs = {output};
+  return scene;
+}
+
+std::string written(const Language& language, const Scene& scene, const std::string& file) {
+  const Folder folder;
+  Listener listener;
+  const Record record = scene.record(language);
+  Context context(record, listener, folder.path(), 1);
+  operators::simulate()(context);
+  return folder.text(file);
+}
+
+std::vector<Numbers> csv_rows(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  std::vector<Numbers> all;
+  while (std::getline(lines, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    all.emplace_back();
+    for (double x; words >> x;) all.back().push_back(x);
+  }
+  return all;
+}
+
+std::string first_line(const std::string& csv) { return csv.substr(0, csv.find('\n')); }
 
 Folder::Folder() {
   static std::atomic<int> count{0};

@@ -66,6 +66,18 @@ Record condition(const Language& language, const std::string& tag, const Attribu
 /// A cube of 2 x 2 x 2 boxes of edge 1/2, of one region, without conditions, weightless.
 Scene cube(const Language& language);
 
+using Numbers = std::vector<double>;
+
+/// The unit cube between rollers, its top pulled with a stress of 10 along z (E = 1000, nu = 0.3, small strain):
+/// homogeneous, with the strain 0.01 along z and -0.003 across; in two load steps.
+Scene pulled(const Language& language, const Record& output);
+
+/// Runs the scene and gives the text of a file it writes.
+std::string written(const Language& language, const Scene& scene, const std::string& file);
+/// The line of names of a CSV text, and the numbers below it.
+std::string first_line(const std::string& csv);
+std::vector<Numbers> csv_rows(const std::string& csv);
+
 /// A folder of its own below the system's folder for temporaries, removed at the end.
 class Folder {
  public:

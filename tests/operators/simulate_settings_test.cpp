@@ -178,7 +178,7 @@ TEST(Result, AnIdThatIsNoFileNameIsRefused) {
 
 TEST(FutureTags, AreKnownAndRefusedWithWhatToUseInstead) {
   const Language language;
-  for (const char* tag : {"supportingMesh", "shapeMatchingConstraint", "contactsurface"}) {
+  for (const char* tag : {"shapeMatchingConstraint", "contactsurface"}) {
     const Description* description = language.registry().find(tag, {"constraint"});
     ASSERT_NE(description, nullptr) << tag;
     EXPECT_FALSE(description->unavailable().empty()) << tag;

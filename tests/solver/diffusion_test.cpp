@@ -83,7 +83,7 @@ TEST(Diffusion, IsStationaryAndNotMixedWithElasticity) {
     model.check();
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("a scalar problem (diffusion) is stationary"));
+    EXPECT_THAT(error.what(), HasSubstr("a scalar problem (diffusionMaterial) is stationary"));
   }
   model = heat_model(CellKind::tet4, 1);
   Region second{.name = "second", .law = make_linear_elastic({})};

@@ -98,6 +98,20 @@ TEST(Explicit, ScenesThatAskForTooLargeAStepAreRefusedWithTheNumber) {
   EXPECT_THAT(outcome.diagnosis, HasSubstr("2 zeta/omega"));
 }
 
+// A damper of c = 2 zeta m w beside the oscillator: 4 - 2 (c/m) dt - w^2 dt^2 > 0.
+TEST(Explicit, DampersShortenTheStableStep) {
+  const Oscillator o = oscillator(true);
+  const double w = o.omega(), zeta = 0.5, limit = 2 * (std::sqrt(1 + zeta * zeta) - zeta) / w;
+  Model model = oscillator_model(Integrator::symplectic_euler, true, 1.05 * limit, 10);
+  model.steps[0].springs = {
+      {.name = "damper", .first = 3, .point = Vec3(0, 0, 2), .damping = 2 * zeta * o.m * w, .rest = 1}};
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::unstable_step);
+  EXPECT_NEAR(outcome.stable_step, limit, 1e-6 * limit);
+  model.steps[0].dt = 0.95 * limit;
+  EXPECT_EQ(solve(model, {}).stop, Stop::converged);
+}
+
 // The tangent grows under a pull that stretches a law stiffening with strain; here: an overflow is caught.
 TEST(Explicit, AnExplosionEndsWithADiagnosisAndTheLastGoodState) {
   const double w = oscillator(true).omega();

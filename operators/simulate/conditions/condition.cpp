@@ -33,7 +33,8 @@ std::vector<ConditionFactory> conditions() {
           spring_mesh_to_fixed(),
           fixed_value(),
           flux(),
-          source()};
+          source(),
+          supporting_mesh()};
 }
 
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes) {

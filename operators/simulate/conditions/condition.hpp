@@ -18,10 +18,10 @@ struct InitialState {
   std::vector<Vec3> values;  ///< one per node
 };
 
-/// What acts on a body in the steps that list it; an initial state acts at the start.
+/// What acts on a body in the steps that list it; an initial state acts at the start, an inlay always.
 struct Condition {
   std::variant<fe::Prescribed, fe::NodalForce, fe::FaceLoad, fe::BodyForce, fe::Slide, std::vector<fe::Spring>,
-               InitialState>
+               InitialState, fe::Inlay>
       what;
   bool lasting = false;  ///< a displacement that holds in later steps too, where they say nothing of its nodes
 };
@@ -48,9 +48,14 @@ ConditionFactory spring_mesh_to_fixed();
 ConditionFactory fixed_value();
 ConditionFactory flux();
 ConditionFactory source();
+ConditionFactory supporting_mesh();
 
 /// All of the above.
 std::vector<ConditionFactory> conditions();
+
+/// Throws Error at the condition's place where it is of displacements, but the body's unknown is scalar, or the other
+/// way round.
+void check_unknown(const Record& condition, bool scalar);
 
 /// Attributes that every condition has.
 struct CommonKeys {

@@ -6,17 +6,23 @@
 namespace msml::simulation {
 namespace {
 
-void need_scalar(const Record& record, const Body& body) {
-  if (!body.scalar)
-    refuse(record, "is for scalar problems, whose regions have diffusionMaterial; this body has displacements");
-}
-
 /// A number as the first component of a vector.
 fe::VectorFunction first_component(const Function& value) {
   return [value](const Vec3& X, double t) { return Vec3(value(X, t), 0, 0); };
 }
 
 }  // namespace
+
+void check_unknown(const Record& condition, bool scalar) {
+  const std::string& tag = condition.tag();
+  const bool of_scalar = tag == "fixedValue" || tag == "flux" || tag == "source";
+  if (of_scalar && !scalar)
+    refuse(condition, "is for scalar problems, whose regions have diffusionMaterial; this body has displacements");
+  if (!of_scalar && scalar)
+    refuse(condition,
+           "is for displacements, but the regions have diffusionMaterial, whose unknown is a number; scalar problems "
+           "take fixedValue, flux and source");
+}
 
 ConditionFactory fixed_value() {
   ConditionFactory tag("fixedValue", "constraint", "Nodes of a scalar problem with a given value.");
@@ -25,7 +31,6 @@ ConditionFactory fixed_value() {
   const auto table = add_table(tag);
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter& reporter) -> Condition {
-      need_scalar(record, body);
       const Function function = msml::function(record, value);
       fe::Prescribed held{.name = label(record),
                           .nodes = select_nodes(record, body, reporter).nodes,
@@ -51,7 +56,6 @@ ConditionFactory flux() {
   const auto table = add_table(tag);
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter&) -> Condition {
-      need_scalar(record, body);
       const Function function = msml::function(record, value);
       fe::FaceLoad load{
           .name = label(record), .faces = select_faces(record, body).faces, .factor = read_table(record, table)};
@@ -76,7 +80,6 @@ ConditionFactory source() {
       "forStep", {.optional = true, .doc = "name of the step it acts in; absent: as the constraint around it says"});
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter&) -> Condition {
-      need_scalar(record, body);
       const Function function = msml::function(record, value);
       fe::BodyForce load{.name = label(record), .elements = body.elements, .factor = read_table(record, table)};
       if (record.has(indices)) load.elements = select_elements(record, body);
