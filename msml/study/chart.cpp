@@ -160,8 +160,7 @@ class Drawing {
                     quoted(chart_.title), quoted(label(chart_.x)), quoted(label(chart_.y)));
     if (x_.log) text += "set logscale x\n";
     if (y_.log) text += "set logscale y\n";
-    if (x_.log && x_.high / x_.low > 1000) text += "set format x \"10^{%T}\"\n";
-    if (y_.log && y_.high / y_.low > 1000) text += "set format y \"10^{%T}\"\n";
+    text += tics("x", x_) + tics("y", y_);
     if (!words_.empty()) {
       std::string tics;
       for (std::size_t i = 0; i < words_.size(); ++i)
@@ -171,9 +170,25 @@ class Drawing {
     return text +
            fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", x_.low, x_.high, y_.low, y_.high) +
            fmt::format(
-               "set grid xtics ytics lc rgb \"#DDDDDD\" lw 1 dt 1\nset border 3\nset tics nomirror out\nunset key\n"
+               "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset key\n"
                "set rmargin {}\n",
                name_width());
+  }
+
+  /// Labels at powers of ten over more than three decades, else at 1, 2, 5, … of each.
+  static std::string tics(const char* axis, const Axis& range) {
+    if (!range.log) return {};
+    if (range.high / range.low > 1000) return fmt::format("set format {} \"10^{{%T}}\"\n", axis);
+    std::string all;
+    for (int power = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10, power) <= range.high; ++power)
+      for (const int digit : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
+        const double value = digit * std::pow(10.0, power);
+        const bool labelled = digit == 1 || digit == 2 || digit == 5 || range.high / range.low < 6;
+        if (value >= range.low && value <= range.high)
+          all += fmt::format("{}{} {:.6g} {}", all.empty() ? "" : ", ",
+                             labelled ? fmt::format("\"{:.6g}\"", value) : "\"\"", value, labelled ? 0 : 1);
+      }
+    return fmt::format("set {}tics ({})\n", axis, all);
   }
 
   std::size_t name_width() const {

@@ -15,6 +15,7 @@ namespace {
 using Cells = std::vector<std::vector<std::string>>;
 
 constexpr double levels[] = {0.1, 0.05, 0.01, 0.001};
+constexpr double compared_levels[] = {0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001};
 
 std::string digits(double x) { return fmt::format("{:.4g}", x); }
 std::string percent(double x) { return fmt::format("{:.4g} %", 100 * x); }
@@ -106,17 +107,20 @@ class Costs {
     if (time()) costs.push_back(time()->id);
     Cells cells{{"error", "method"}};
     for (const std::string& cost : costs) cells.front().insert(cells.front().end(), {cost, "to the best"});
-    for (const double level : levels) {
+    for (const double level : compared_levels) {
       Cells rows;
       for (const std::string& name : distinct(table_, group)) rows.push_back({percent(level), name});
       bool any = false;
       for (const std::string& cost : costs) any = add_costs(group, cost, level, rows) || any;
-      if (any) cells.insert(cells.end(), rows.begin(), rows.end());
+      std::erase_if(rows, [](const auto& row) {
+        return std::all_of(row.begin() + 2, row.end(), [](const std::string& text) { return text.empty(); });
+      });
+      if (any && rows.size() > 1) cells.insert(cells.end(), rows.begin(), rows.end());
     }
     if (cells.size() == 1) return;
     heading(fmt::format("What each method needs for the same {}", subject_.name));
     paragraph(
-        "Between runs by straight lines in the logarithms; empty where a method's runs do not bracket the error.");
+        "Between runs by straight lines in the logarithms, for errors that the runs of at least two methods bracket.");
     table(std::move(cells));
   }
 
