@@ -187,7 +187,8 @@ Factory<OutputRequest> section() {
   tag.note(
       "The force is the work of the stress on the elements that the plane cuts, as their corners on the side of the "
       "normal move by one unit: it balances the loads and reactions of that side. So does the moment "
-      "of quadratic elements; that of linear ones differs in second order of their size.");
+      "of quadratic elements; that of linear ones differs in second order of their size. A "
+      "supportingMesh carries its part.");
   tag.build([=](const Record& record) {
     OutputRequest request{.id = file_stem(record, id),
                           .every = static_cast<int>(record[every]),

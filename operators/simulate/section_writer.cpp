@@ -9,6 +9,8 @@
 #include "operators/simulate/output_writer.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/spots.hpp"
+#include "solver/elements/shapes.hpp"
+#include "solver/materials/law.hpp"
 
 namespace msml::simulation {
 namespace {
@@ -91,31 +93,50 @@ std::vector<Piece> cut(const Body& body, double thickness, const Plane& plane) {
   return pieces;
 }
 
-/// An element with corners on both sides.
+/// A function on the points of the body's mesh: 1 at corners on the side of the normal, else 0; at mid nodes the mean
+/// of the corners of the edge.
+std::vector<double> sides(const Body& body, const Plane& plane) {
+  const Mesh& mesh = *body.mesh;
+  std::vector<double> side(static_cast<std::size_t>(mesh.point_count()), 0);
+  const int corners = corner_count(body.kind);
+  for (const int element : body.elements) {
+    const int* nodes = mesh.cell(element);
+    const auto at = [&](int a) -> double& { return side[static_cast<std::size_t>(nodes[a])]; };
+    for (int a = 0; a < corners; ++a) at(a) = plane.distance(mesh.points.row(nodes[a]).transpose()) < 0 ? 0 : 1;
+    for (int m = corners; m < node_count(body.kind); ++m) {
+      const auto& edge =
+          fe::Simplex<3, 10>::edges[static_cast<std::size_t>(body.kind == CellKind::line3 ? 0 : m - corners)];
+      at(m) = 0.5 * (at(edge[0]) + at(edge[1]));
+    }
+  }
+  return side;
+}
+
+/// An element in which that function is not constant.
 struct Bridge {
   int element;
-  Vec3 slope;  ///< gradient of the function that is linear in the element, 1 at corners on the side of the normal, else
-               ///< 0
+  Vec3 slope;  ///< its gradient, from the corners
 };
 
-std::vector<Bridge> bridges(const Body& body, const Plane& plane) {
+std::vector<Bridge> bridges(const Mesh& mesh, const std::vector<int>& elements, const std::vector<double>& side) {
   std::vector<Bridge> found;
-  const Mesh& mesh = *body.mesh;
-  const int dimension = msml::dimension(body.kind);
-  for (const int element : body.elements) {
-    const auto side = [&](int a) {
-      return plane.distance(mesh.points.row(mesh.cell(element)[a]).transpose()) < 0 ? 0.0 : 1.0;
-    };
+  for (const int element : elements) {
+    const int* nodes = mesh.cell(element);
     Mat3 edges = Mat3::Identity();
     Vec3 steps = Vec3::Zero();
-    for (int a = 1; a <= dimension; ++a) {
-      edges.row(a - 1) = mesh.points.row(mesh.cell(element)[a]) - mesh.points.row(mesh.cell(element)[0]);
-      steps[a - 1] = side(a) - side(0);
+    for (int a = 1; a < corner_count(mesh.kinds[static_cast<std::size_t>(element)]); ++a) {
+      edges.row(a - 1) = mesh.points.row(nodes[a]) - mesh.points.row(nodes[0]);
+      steps[a - 1] = side[static_cast<std::size_t>(nodes[a])] - side[static_cast<std::size_t>(nodes[0])];
     }
     if (steps.norm() > 0) found.push_back({element, edges.inverse() * steps});
   }
   return found;
 }
+
+/// Sums over bridges.
+struct Pull {
+  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
+};
 
 /// Mean over an element of a quantity given at its nodes: weight of corners and of mid nodes.
 Vec3 mean_over(const Mesh& mesh, int element, const Points& values) {
@@ -140,6 +161,64 @@ Mat3 tensor(const std::vector<double>& values, std::size_t i) {
 constexpr fe::ElementRequest needed{
     .law = false, .J = false, .rotation = false, .tensors = true, .volume = true, .stress_moments = true};
 
+/// Adds the work of the stress as the function moves the body: along each axis, and turning about `centre`.
+void add_pull(const Mesh& mesh, const std::vector<Bridge>& bridges, const fe::ElementResults& results, const Points& x,
+              const Vec3& centre, Pull& sum) {
+  for (const Bridge& bridge : bridges) {
+    const auto e = static_cast<std::size_t>(bridge.element);
+    const Vec3 pull = results.volume[e] * (tensor(results.first_piola, e) * bridge.slope);
+    sum.force += pull;
+    sum.moment += (mean_over(mesh, bridge.element, x) - centre).cross(pull);
+    for (std::size_t j = 0; j < 3; ++j)
+      sum.moment +=
+          Vec3::Unit(static_cast<Eigen::Index>(j)).cross(tensor(results.stress_moments, 3 * e + j) * bridge.slope);
+  }
+}
+
+/// A mesh embedded in the body, with what of it the plane cuts.
+class Inner {
+ public:
+  Inner(const Mesh& body, const fe::Inlay& inlay, const std::vector<double>& side, int threads)
+      : body_(body), ties_(inlay.ties) {
+    model_.mesh = inlay.mesh;
+    model_.regions = {inlay.region};
+    model_.settings.threads = threads;
+    measurer_ = std::make_unique<const fe::Measurer>(model_);
+    std::vector<double> own(ties_.size(), 0);
+    for (std::size_t n = 0; n < own.size(); ++n)
+      follow(n, [&](int node, double weight) { own[n] += weight * side[static_cast<std::size_t>(node)]; });
+    bridges_ = bridges(*inlay.mesh, inlay.region.elements, own);
+  }
+
+  /// Of a displacement of the body's points.
+  void add(const Points& displacement, const Vec3& centre, Pull& sum) const {
+    fe::State state;
+    state.displacement = Points::Zero(model_.mesh->points.rows(), 3);
+    for (std::size_t n = 0; n < ties_.size(); ++n)
+      follow(n, [&](int node, double weight) {
+        state.displacement.row(static_cast<Eigen::Index>(n)) += weight * displacement.row(node);
+      });
+    const Points& X = model_.mesh->points;
+    const bool small = model_.regions.front().law->small_strain();
+    add_pull(*model_.mesh, bridges_, measurer_->measure(state, needed), small ? X : X + state.displacement, centre,
+             sum);
+  }
+
+ private:
+  template <class Visit>
+  void follow(std::size_t n, const Visit& visit) const {
+    const fe::Tie& tie = ties_[n];
+    for (std::size_t a = 0; tie.element >= 0 && a < tie.weights.size(); ++a)
+      visit(body_.cell(tie.element)[a], tie.weights[a]);
+  }
+
+  const Mesh& body_;
+  const std::vector<fe::Tie>& ties_;
+  fe::Model model_;
+  std::unique_ptr<const fe::Measurer> measurer_;
+  std::vector<Bridge> bridges_;
+};
+
 class SectionWriter final : public TableWriter {
  public:
   SectionWriter(const Simulation& simulation, const OutputRequest& request, const std::filesystem::path& folder)
@@ -150,7 +229,10 @@ class SectionWriter final : public TableWriter {
     check(*request.record);
     const Plane plane{*request.point, normal_, 1e-10 * diagonal(*body_.mesh)};
     pieces_ = cut(body_, simulation.model.thickness, plane);
-    bridges_ = bridges(body_, plane);
+    const std::vector<double> side = sides(body_, plane);
+    bridges_ = bridges(*body_.mesh, body_.elements, side);
+    for (const fe::Inlay& inlay : simulation.model.inlays)
+      inlays_.push_back(std::make_unique<Inner>(*body_.mesh, inlay, side, simulation.model.settings.threads));
     if (pieces_.empty())
       refuse(*request.record, fmt::format("the plane through {} with the normal {} misses the body, which spans {}",
                                           place(*request.point), place(normal_), bounds(body_)));
@@ -170,17 +252,11 @@ class SectionWriter final : public TableWriter {
     const Points x = body_.small_strain ? body_.mesh->points : fields.positions();
     const fe::ElementResults results = fields.measure(needed);
     const auto [area, centroid] = deformed(results.deformation_gradient, x);
-    Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-    for (const Bridge& bridge : bridges_) {
-      const auto e = static_cast<std::size_t>(bridge.element);
-      const Vec3 pull = results.volume[e] * (tensor(results.first_piola, e) * bridge.slope);
-      force += pull;
-      moment += (mean_over(*body_.mesh, bridge.element, x) - centroid).cross(pull);
-      for (std::size_t j = 0; j < 3; ++j)
-        moment +=
-            Vec3::Unit(static_cast<Eigen::Index>(j)).cross(tensor(results.stress_moments, 3 * e + j) * bridge.slope);
-    }
-    return {{state.time, area, force[0], force[1], force[2], moment[0], moment[1], moment[2]}};
+    Pull sum;
+    add_pull(*body_.mesh, bridges_, results, x, centroid, sum);
+    for (const auto& inlay : inlays_) inlay->add(fields.positions() - body_.mesh->points, centroid, sum);
+    const Vec3 &f = sum.force, &m = sum.moment;
+    return {{state.time, area, f[0], f[1], f[2], m[0], m[1], m[2]}};
   }
 
   /// Area of the deformed section and its centroid.
@@ -205,6 +281,7 @@ class SectionWriter final : public TableWriter {
   Vec3 normal_;
   std::vector<Piece> pieces_;
   std::vector<Bridge> bridges_;
+  std::vector<std::unique_ptr<const Inner>> inlays_;  // in their places: they hold what points at themselves
 };
 
 }  // namespace

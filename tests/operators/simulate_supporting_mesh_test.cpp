@@ -41,6 +41,20 @@ TEST(SupportingMesh, AddsItsStiffness) {
   }
 }
 
+// All that is pulled along z passes through any section, whatever part of it goes through the inner mesh; across, the
+// rollers push, since the stress is no longer constant.
+TEST(SupportingMesh, CarriesItsPartOfTheForceOnASection) {
+  const Language language;
+  Mesh inner = box(3, 3, 3, 0.2);
+  inner.points.array() += 0.15;
+  Scene scene = supported(language, inner, 3000);
+  scene.outputs = {
+      language.tag("section", "output",
+                   {{"id", std::string("s")}, {"point", Numbers{0.5, 0.5, 0.4}}, {"normal", Numbers{0.1, 0.2, 1}}})};
+  const Numbers last = csv_rows(written(language, scene, "s.csv")).back();
+  EXPECT_NEAR(last[4], 10, 1e-7);  // Newton stops at 1e-8 of the loads
+}
+
 TEST(SupportingMesh, LiesInsideTheBody) {
   const Language language;
   EXPECT_THAT(message(supported(language, box(3, 1, 1, 0.5), 3000), language),

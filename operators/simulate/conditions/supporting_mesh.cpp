@@ -58,6 +58,9 @@ ConditionFactory supporting_mesh() {
       "Its nodes move with the elements of the main mesh that hold them, so that it adds no unknowns: its forces, "
       "stiffness and mass come on top of those of the tissue in its place.");
   tag.note("Its material is linearElasticMaterial: of small strain where that of all regions is, else corotated.");
+  tag.note(
+      "Its forces, energy and mass count in sections, energies and the check; fields and volumes are those of the main "
+      "mesh.");
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter& reporter) -> Condition {
       if (dimension(body.kind) != 3) refuse(record, "needs a main mesh of tetrahedra");
