@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstring>
 
 namespace msml::fe {
 namespace {
@@ -77,19 +78,55 @@ void BlockMatrix::assign(const BlockMatrix& A, double s, const ScalarMatrix& M) 
   });
 }
 
+namespace {
+
+using Four = double __attribute__((vector_size(32)));
+
+Four four(const double* from) {
+  Four values;
+  std::memcpy(&values, from, sizeof values);
+  return values;
+}
+
+/// Blocks [first, last) of a row; reads one number behind each block and behind each node's three.
+void multiply_row(const BlockMatrix& A, int first, int last, const double* x, double* y) {
+  Four s0{}, s1{}, s2{};
+  for (int p = first; p < last; ++p) {
+    const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
+    const Four v = four(x + 3 * A.pattern->columns[static_cast<std::size_t>(p)]);
+    s0 += four(a) * v;
+    s1 += four(a + 3) * v;
+    s2 += four(a + 6) * v;
+  }
+  y[0] = s0[0] + s0[1] + s0[2], y[1] = s1[0] + s1[1] + s1[2], y[2] = s2[0] + s2[1] + s2[2];
+}
+
+/// The same, reading nothing beyond.
+void multiply_last_row(const BlockMatrix& A, int first, int last, const double* x, double* y) {
+  double s0 = 0, s1 = 0, s2 = 0;
+  for (int p = first; p < last; ++p) {
+    const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
+    const double* v = x + 3 * A.pattern->columns[static_cast<std::size_t>(p)];
+    s0 += a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
+    s1 += a[3] * v[0] + a[4] * v[1] + a[5] * v[2];
+    s2 += a[6] * v[0] + a[7] * v[1] + a[8] * v[2];
+  }
+  y[0] = s0, y[1] = s1, y[2] = s2;
+}
+
+}  // namespace
+
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
   const Pattern& pattern = *A.pattern;
   y.resize(x.size());
+  const int end = pattern.nodes() - 1;
   for_rows(pattern.nodes(), [&](int r) {
-    double s0 = 0, s1 = 0, s2 = 0;
-    for (int p = pattern.offsets[r]; p < pattern.offsets[r + 1]; ++p) {
-      const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
-      const double* v = x.data() + 3 * pattern.columns[p];
-      s0 += a[0] * v[0] + a[1] * v[1] + a[2] * v[2];
-      s1 += a[3] * v[0] + a[4] * v[1] + a[5] * v[2];
-      s2 += a[6] * v[0] + a[7] * v[1] + a[8] * v[2];
-    }
-    y[3 * r] = s0, y[3 * r + 1] = s1, y[3 * r + 2] = s2;
+    const int first = pattern.offsets[static_cast<std::size_t>(r)];
+    const int last = pattern.offsets[static_cast<std::size_t>(r) + 1];
+    if (pattern.columns[static_cast<std::size_t>(last) - 1] == end)
+      multiply_last_row(A, first, last, x.data(), y.data() + 3 * r);
+    else
+      multiply_row(A, first, last, x.data(), y.data() + 3 * r);
   });
 }
 

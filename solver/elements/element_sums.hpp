@@ -61,6 +61,23 @@ void add_stiffness(const Lanes* A, Lanes w, const Lanes (&g)[nodes][dimension],
   }
 }
 
+/// Adds lane k of a 3 x 3 block, or its transpose, to the block at position(k) of the matrix, for the first `count`
+/// lanes: eight numbers at once.
+template <bool transpose_block, class Position>
+void add_blocks(const Lanes* block, int count, const Position& position, BlockMatrix& matrix) {
+  Lanes first[lanes];  // entry by entry, then lane by lane
+  for (int k = 0; k < lanes; ++k) first[k] = block[transpose_block ? 3 * (k % 3) + k / 3 : k];
+  transpose(first);
+  for (int lane = 0; lane < count; ++lane) {
+    double* out = matrix.values.data() + 9 * static_cast<std::size_t>(position(lane));
+    Lanes sum;
+    std::memcpy(&sum, out, sizeof sum);
+    sum += first[lane];
+    std::memcpy(out, &sum, sizeof sum);
+    out[8] += block[8][lane];
+  }
+}
+
 /// det F of F = I + H.
 inline Lanes volume_ratio(const Gradients& H) {
   Tensor<Lanes> F = H;

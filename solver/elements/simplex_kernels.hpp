@@ -41,6 +41,18 @@ void scatter_force(const Batch& batch, const SimplexResult<dimension, nodes>& re
 
 template <int dimension, int nodes, class Batch>
 void scatter_stiffness(const Batch& batch, const SimplexResult<dimension, nodes>& result, BlockMatrix& matrix) {
+  if constexpr (dimension == 3) {
+    for (int b = 0; b < nodes; ++b)
+      for (int a = 0; a <= b; ++a) {
+        const Lanes* block = result.block[packed(b, a)];
+        add_blocks<false>(
+            block, batch.count, [&](int lane) { return batch.position[lane][a * nodes + b]; }, matrix);
+        if (a < b)
+          add_blocks<true>(
+              block, batch.count, [&](int lane) { return batch.position[lane][b * nodes + a]; }, matrix);
+      }
+    return;
+  }
   for (int lane = 0; lane < batch.count; ++lane)
     for (int b = 0; b < nodes; ++b)
       for (int a = 0; a <= b; ++a) {
