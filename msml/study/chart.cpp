@@ -61,6 +61,7 @@ class Drawing {
     const bool log = chart.axes.log_x || chart.axes.log_y;
     curves_ = curves(table_, chart.x, chart.y, chart.group, log);
     if (!chart.axes.log_x || !chart.axes.log_y) keep_fitting();
+    if (has_bars(chart.x)) sort_by_row();
     std::vector<double> xs, ys;
     for (const Curve& curve : curves_)
       for (const Point& point : curve.points) {
@@ -131,6 +132,12 @@ class Drawing {
     std::erase_if(curves_, [](const Curve& curve) { return curve.points.empty(); });
   }
 
+  /// Along a measured time the points follow each other as in the table: from coarse to fine, not by noise.
+  void sort_by_row() {
+    for (Curve& curve : curves_)
+      std::sort(curve.points.begin(), curve.points.end(), [](const Point& a, const Point& b) { return a.row < b.row; });
+  }
+
   void add(std::vector<double>& values, std::size_t row, const std::string& column, bool log) const {
     const double value = table_.number(row, column);
     if (std::isfinite(value) && (!log || value > 0)) values.push_back(value);
@@ -170,7 +177,8 @@ class Drawing {
     return text +
            fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", x_.low, x_.high, y_.low, y_.high) +
            fmt::format(
-               "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset key\n"
+               "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset "
+               "key\n"
                "set rmargin {}\n",
                name_width());
   }
@@ -214,17 +222,18 @@ class Drawing {
     return text + "EOD\n";
   }
 
+  /// Bars first, so that the marks lie on them.
   std::string plot(std::size_t i) const {
     const char* colour = colours[i % colours.size()];
     const bool joined = style_.joined && curves_[i].points.size() > 1;
-    std::string text =
-        fmt::format("$curve{} using 1:2 with {} lw 2 dt {} pt {} ps 1.1 lc rgb \"{}\" notitle", i,
-                    joined ? "linespoints" : "points", i / colours.size() + 1, marks[i % marks.size()], colour);
-    for (const auto& [column, style] :
+    std::string text;
+    for (const auto& [column, bars] :
          {std::pair{chart_.x, "1:2:3:4 with xerrorbars"}, std::pair{chart_.y, "1:2:5:6 with yerrorbars"}})
       if (has_bars(column))
-        text += fmt::format(", \\\n     $curve{} using {} lw 1.5 pt 0 lc rgb \"{}\" notitle", i, style, colour);
-    return text;
+        text += fmt::format("$curve{} using {} lw 1.5 pt 0 lc rgb \"{}\" notitle, \\\n     ", i, bars, colour);
+    return text + fmt::format("$curve{} using 1:2 with {} lw 2 dt {} pt {} ps 1.1 lc rgb \"{}\" notitle", i,
+                              joined ? "linespoints" : "points", i / colours.size() + 1, marks[i % marks.size()],
+                              colour);
   }
 
   /// Names at the ends of the curves, moved apart where they would overlap.

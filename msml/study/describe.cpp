@@ -22,7 +22,8 @@ Part<Vary> vary_tag() {
   const auto variable = tag.parameter<Words>("variable", {.doc = "its name; several names vary together"});
   const auto values = tag.parameter<std::string>(
       "values", {.optional = true,
-                 .doc = "a list; with ';' between the values where one holds blanks or stands for several variables"});
+                 .doc = "a list; with ';' between the values where one holds blanks or stands for several "
+                        "variables, or with braces around what belongs together: {1 2 7}"});
   const auto from = tag.parameter("from", {.optional = true, .doc = "first value of a range"});
   const auto to = tag.parameter("to", {.optional = true, .doc = "last value of a range"});
   const auto count =

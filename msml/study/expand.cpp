@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -25,6 +26,21 @@ std::vector<std::string> split(const std::string& text, char at) {
   for (std::string& part : parts) part = trimmed(part);
   if (parts.size() > 1 && parts.back().empty()) parts.pop_back();
   return parts;
+}
+
+/// Words divided by blanks or commas; what stands between braces is one word, with its braces.
+std::vector<std::string> words(const std::string& text) {
+  std::vector<std::string> found{""};
+  int depth = 0;
+  for (const char c : text) {
+    depth += (c == '{') - (c == '}');
+    if (depth <= 0 && (c == ',' || std::isspace(static_cast<unsigned char>(c))))
+      found.emplace_back();
+    else
+      found.back() += c;
+  }
+  std::erase(found, "");
+  return found;
 }
 
 /// The value a share s of the way along a range.
@@ -92,8 +108,8 @@ std::vector<std::vector<std::string>> parse_values(const std::string& text, cons
   std::vector<std::vector<std::string>> values;
   const std::size_t width = vary.variables.size();
   const bool tuples = text.find(';') != std::string::npos || width > 1;
-  for (const std::string& part : tuples ? split(text, ';') : list_parts(text)) {
-    values.push_back(width == 1 ? std::vector<std::string>{part} : list_parts(part));
+  for (const std::string& part : tuples ? split(text, ';') : words(text)) {
+    values.push_back(width == 1 ? std::vector<std::string>{part} : words(part));
     if (values.back().size() != width)
       fault(vary.where, fmt::format("values: '{}' has {} words, but {} variables vary together ({})",
                                     quoted_value(part), values.back().size(), width, fmt::join(vary.variables, " ")));
@@ -110,7 +126,7 @@ std::vector<std::vector<std::string>> range_values(const Vary& vary, int count) 
 
 Settings parse_settings(const std::string& text, const Location& where, const FaultSink& fault) {
   Settings settings;
-  for (const std::string& part : text.find(';') == std::string::npos ? list_parts(text) : split(text, ';')) {
+  for (const std::string& part : text.find(';') == std::string::npos ? words(text) : split(text, ';')) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos || equals == 0)
       fault(where, fmt::format("set: '{}' is not of the form name=value; ';' stands between them where a value holds "

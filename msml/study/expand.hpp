@@ -5,8 +5,8 @@
 
 namespace msml {
 
-/// The values of a list: tuples between ';', or, without one, single words. A tuple with a wrong number of words is
-/// told to `fault`.
+/// The values of a list: tuples between ';', or, without one, single words; {1 2 3} is one word. A tuple with a wrong
+/// number of words is told to `fault`.
 std::vector<std::vector<std::string>> parse_values(const std::string& text, const Vary& vary, const FaultSink& fault);
 
 /// `count` values from one end of the range to the other, both included, in the scale of the range.

@@ -20,14 +20,17 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
+Error beyond(double limit) {
+  return Error(fmt::format("ended after its limit of {} s", limit), {}, Failure::interrupted);
+}
+
 /// Ends a run that takes longer than its limit, the next time it reports progress.
 class Stopwatch final : public Watcher {
  public:
   explicit Stopwatch(double limit) : limit_(limit) {}
   void started(int) override {}
   void progress(int, double, const std::string&) override {
-    if (limit_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() > limit_)
-      throw Error(fmt::format("ended after its limit of {} s", limit_), {}, Failure::interrupted);
+    if (limit_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() > limit_) throw beyond(limit_);
   }
   void finished(int, const NodeReport&) override {}
   void note(int, const std::string&) override {}
@@ -38,6 +41,8 @@ class Stopwatch final : public Watcher {
   double limit_;
   Clock::time_point start_ = Clock::now();
 };
+
+const std::string reference_failed = "the reference: ";
 
 const char* status_of(const Error& error) {
   switch (error.failure()) {
@@ -83,7 +88,7 @@ class Runner {
         carry_out(run, options_.folder / "runs" / fmt::format("{:04}", number), row);
         row.status = "done";
       } catch (const Error& error) {
-        row.status = status_of(error);
+        row.status = std::string(error.what()).starts_with(reference_failed) ? "no reference" : status_of(error);
         row.reason = error.str();
       }
     }
@@ -103,7 +108,7 @@ class Runner {
     if (run.reference) {
       truth_shelf.emplace(results_, run.reference->keys, 0);
       truth = pass(*run.reference, *truth_shelf, folder / "reference", 0);
-      if (!truth->errors.empty()) throw Error("the reference: " + truth->errors.front().str(), {}, Failure::internal);
+      if (!truth->errors.empty()) throw Error(reference_failed + truth->errors.front().str(), {}, Failure::internal);
     }
     for (int repetition = 0; repetition < study_.repetitions(); ++repetition) {
       RunShelf shelf(results_, run.scene->keys, static_cast<std::size_t>(repetition));
@@ -122,7 +127,9 @@ class Runner {
 
   RunResult pass(const Prepared& scene, RunShelf& shelf, const fs::path& folder, double limit) {
     Stopwatch watch(limit);
-    return msml::run(scene.graph, scene.plan, registry_, {folder, 1, options_.threads, &shelf}, watch);
+    RunResult result = msml::run(scene.graph, scene.plan, registry_, {folder, 1, options_.threads, &shelf}, watch);
+    if (result.errors.empty() && limit > 0 && result.seconds > limit) result.errors.push_back(beyond(limit));
+    return result;
   }
 
   std::vector<std::string> cells(const StudyRun& run, const Row& row) const {

@@ -35,6 +35,13 @@ TEST(Expand, ValuesBetweenSemicolonsMayHoldBlanks) {
   EXPECT_EQ(runs[1][0].second, "2 4 14");
 }
 
+TEST(Expand, BracesHoldTogetherWhatIsOneValue) {
+  const auto runs = expand(of({list({"kind", "n"}, "tet4 {1 2 7}; tet10 {2, 4, 14}")}), no_fault);
+  ASSERT_EQ(runs.size(), 2U);
+  EXPECT_EQ(runs[1], (Settings{{"kind", "tet10"}, {"n", "{2, 4, 14}"}}));
+  EXPECT_EQ(expand(of({list({"n"}, "{1 2 7} {2 4 14}")}), no_fault).size(), 2U);
+}
+
 TEST(Expand, VariablesThatVaryTogetherTakeTheirTuples) {
   const auto runs = expand(of({list({"n", "dt"}, "1 .1; 2 .05")}), no_fault);
   ASSERT_EQ(runs.size(), 2U);

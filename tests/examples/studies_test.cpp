@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The studies that are shipped: all are free of faults, and some run here with small settings.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/pipeline/program.hpp"
+
+namespace msml::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+fs::path scene(const std::string& name) {
+  return fs::path(MSML_SOURCE_DIR) / "examples" / "studies" / (name + ".msml.xml");
+}
+
+/// Runs a study and returns its results.json.
+Json run_study(const std::string& name, const std::string& study, const Folder& folder,
+               const std::string& arguments = "") {
+  const Finished run =
+      run_msml("study " + quoted(scene(name)) + " " + study + " -o " + quoted(folder.path()) + " " + arguments);
+  EXPECT_EQ(run.code, 0) << run.err;
+  return Json::parse(content(folder / study / "results.json"), nullptr, false);
+}
+
+/// log2 of the ratio of a measure between the last two meshes of an element.
+double order(const Json& results, const std::string& element, const std::string& measure) {
+  std::vector<double> errors;
+  for (const Json& row : results["rows"])
+    if (row["element"] == element) errors.push_back(row[measure]);
+  EXPECT_EQ(errors.size(), 3U) << element;
+  return std::log2(errors[1] / errors[2]);
+}
+
+TEST(Studies, AllOfThemAreFreeOfFaults) {
+  int seen = 0;
+  for (const auto& entry : fs::directory_iterator(scene("beam").parent_path())) {
+    if (!entry.path().string().ends_with(".msml.xml")) continue;
+    ++seen;
+    const Finished check = run_msml("check " + quoted(entry.path()));
+    EXPECT_EQ(check.code, 0) << check.err;
+    EXPECT_NE(content(entry.path()).find("<study "), std::string::npos) << entry.path();
+  }
+  EXPECT_GE(seen, 7);
+}
+
+TEST(Studies, ConvergeAtTheOrdersOfTheory) {
+  const Folder folder;
+  const Json results = run_study("convergence", "smooth_solution", folder);
+  // p + 1 in L2 and p in H1; on meshes of 4 and 8 elements along an edge the asymptotic order is met within 0.35.
+  for (const char* element : {"tet10", "mixed"}) {
+    EXPECT_NEAR(order(results, element, "L2"), 3, 0.35) << element;
+    EXPECT_NEAR(order(results, element, "H1"), 2, 0.35) << element;
+  }
+  for (const char* element : {"tet4", "tet4Fbar"}) {
+    EXPECT_NEAR(order(results, element, "L2"), 2, 0.35) << element;
+    EXPECT_NEAR(order(results, element, "H1"), 1, 0.35) << element;
+  }
+}
+
+TEST(Studies, LeaveTablesPagesAndCharts) {
+  const Folder folder;
+  const Json results = run_study("uncertainty", "uncertainty", folder, "--html --set samples=12");
+  EXPECT_EQ(results["rows"].size(), 12U);
+  for (const Json& row : results["rows"]) EXPECT_EQ(row["status"], "done");
+  EXPECT_EQ(results["nodesShared"], 11 * 5) << "the mesh and what goes with it is made once";
+  const fs::path out = folder / "uncertainty";
+  for (const char* file : {"results.csv", "page.md", "page.html", "distribution.gp"})
+    EXPECT_TRUE(fs::exists(out / file)) << file;
+  EXPECT_NE(content(out / "page.md").find("## Spread"), std::string::npos);
+  const Finished chart = run_msml("chart " + quoted(out / "results.csv") + " --x E --y sunk --scale linear");
+  EXPECT_EQ(chart.code == 0, fs::exists(out / "sunk_over_E.svg")) << chart.err;
+  const Finished wrong = run_msml("chart " + quoted(out / "results.csv") + " --x E --y sank");
+  EXPECT_EQ(wrong.code, 2);
+  EXPECT_NE(wrong.err.find("has no column sank (did you mean 'sunk'?)"), std::string::npos) << wrong.err;
+}
+
+TEST(Studies, AnUnknownNameIsSaid) {
+  const Finished run = run_msml("study " + quoted(scene("beam")) + " beam_gravty");
+  EXPECT_EQ(run.code, 2);
+  EXPECT_NE(run.err.find("no study is called beam_gravty (did you mean 'beam_gravity'?)"), std::string::npos)
+      << run.err;
+}
+
+}  // namespace
+}  // namespace msml::testing
