@@ -55,6 +55,9 @@ bool Newton::accepted(const Increment& increment, const IncrementResult& result)
   const double norm = result.residuals.back(), tolerance = model_.settings.tolerance;
   if (!std::isfinite(norm) || !std::isfinite(result.scale)) return false;
   if (norm <= std::max(tolerance * result.scale, round_off_)) return true;
+  // Nor do more iterations help where round-off of the largest forces met is all that is left.
+  const std::size_t count = result.residuals.size();
+  if (count >= 3 && norm <= 1e-12 * result.largest_scale && norm > 0.5 * result.residuals[count - 2]) return true;
   // Where all forces vanish in the end they are no scale: a full step of exact Newton that is tiny beside the way gone
   // is the last one. Its own square is what is left then.
   if (last_step_ == 0 || result.residuals.size() < 3) return false;
