@@ -46,7 +46,7 @@ void print_row(const Study& study, const Table& table, std::size_t row) {
 Table earlier(const fs::path& file, bool fresh) { return fresh || !fs::exists(file) ? Table{} : read_csv(file); }
 
 void draw_charts(const Study& study, const Table& table, const fs::path& folder) {
-  ChartStyle style{column_units(study), study.combine != Combine::latin_hypercube};
+  ChartStyle style{column_labels(study), study.combine != Combine::latin_hypercube};
   for (const Chart& chart : study.charts) {
     try {
       if (const std::string problem = draw(table, chart, style, folder); !problem.empty())

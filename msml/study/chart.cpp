@@ -144,12 +144,10 @@ class Drawing {
   }
 
   std::string label(const std::string& column) const {
-    const auto unit = style_.units.find(column);
+    const auto known = style_.labels.find(column);
     std::string name = column;
     std::replace(name.begin(), name.end(), '_', ' ');
-    return unit == style_.units.end() || unit->second.empty() || unit->second == "1"
-               ? name
-               : fmt::format("{} [{}]", name, unit->second);
+    return known == style_.labels.end() ? name : known->second;
   }
 
   std::string head() const {

@@ -57,7 +57,7 @@ TEST(Chart, NamesItsCurvesAndMarksWhatFailed) {
 TEST(Chart, TimesHaveErrorBars) {
   Chart chart = study().charts[0];
   chart.x = "time";
-  const std::string script = gnuplot_script(convergence(), chart, {.units = {{"time", "s"}}});
+  const std::string script = gnuplot_script(convergence(), chart, {.labels = {{"time", "time [s]"}}});
   EXPECT_THAT(script, HasSubstr("xerrorbars"));
   EXPECT_THAT(script, HasSubstr("set xlabel \"time [s]\""));
 }
