@@ -90,6 +90,7 @@ struct CommandLine {
 
   void add_study_options() {
     studies->add_option("name", study.name, "id of the study (default: all of the scene)");
+    studies->add_flag("-n,--dry-run", study.scene.dry_run, "print the runs, run nothing");
     studies->add_flag("--html", study.html, "page and charts in one HTML file too");
     studies->add_flag("--fresh", study.fresh, "run everything anew (default: go on where results.csv ends)");
     studies->add_flag("--keep", study.keep, "keep the files of the runs");

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <set>
 #include <thread>
 
 #include "msml/core/atomic_file.hpp"
@@ -44,7 +46,7 @@ void print_row(const Study& study, const Table& table, std::size_t row) {
 Table earlier(const fs::path& file, bool fresh) { return fresh || !fs::exists(file) ? Table{} : read_csv(file); }
 
 void draw_charts(const Study& study, const Table& table, const fs::path& folder) {
-  ChartStyle style{column_units(study), study.combine != Combine::latin_hypercube};
+  ChartStyle style{column_labels(study), study.combine != Combine::latin_hypercube};
   for (const Chart& chart : study.charts) {
     try {
       if (const std::string problem = draw(table, chart, style, folder); !problem.empty())
@@ -91,6 +93,7 @@ class StudyRunner {
     if (!study.timed() && arguments_.scene.threads == 0) options.threads = 1;  // several runs share the processors
     const auto runs = prepare_runs(document_, registry_, compile_options_, study);
     if (!arguments_.scene.quiet) std::fprintf(stderr, "study %s: %zu runs\n", study.id.c_str(), runs.size());
+    if (arguments_.scene.dry_run) return print_plan(runs);
     Sharing sharing;
     const Table table = run_study(
         study, runs, registry_, options, earlier(options.folder / "results.csv", arguments_.fresh),
@@ -107,6 +110,22 @@ class StudyRunner {
       std::fprintf(stderr, "study %s: %s, %zu nodes computed, %zu taken from other runs; see %s\n", study.id.c_str(),
                    duration(seconds).c_str(), sharing.computed, sharing.shared,
                    (options.folder / "page.md").string().c_str());
+  }
+
+  /// The settings of each run, whether it can be carried out, and how many nodes it has of its own.
+  static void print_plan(const std::vector<StudyRun>& runs) {
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < runs.size(); ++i) {
+      std::string line = fmt::format("[{}/{}]", i + 1, runs.size());
+      for (const auto& [name, value] : runs[i].settings) line += fmt::format(" {}={}", name, value);
+      if (!runs[i].scene) line += ": refused: " + runs[i].reason;
+      std::size_t nodes = 0, own = 0;
+      for (const auto& part : {runs[i].scene, runs[i].reference})
+        if (part)
+          for (const std::string& key : part->used()) ++nodes, own += seen.insert(key).second;
+      if (runs[i].scene) line += fmt::format(": {} nodes, {} of them new", nodes, own);
+      std::puts(line.c_str());
+    }
   }
 
   void write_page(const Study& study, const Table& table, const StudyOptions& options) const {

@@ -102,6 +102,10 @@ Description describe_variable(VariableKeys& keys) {
   keys.role = var.parameter<std::string>("role", {.optional = true,
                                                   .choices = {"input", "output", "param", "fix"},
                                                   .doc = "marks the scene's interface, see msml exec --set"});
+  var.note(
+      "Any tag of the scene may carry when=\"${name} = value\" (or !=, with | between several values): it is there "
+      "only "
+      "where that holds. So one scene has several elements, laws or operators to choose from.");
   return var;
 }
 

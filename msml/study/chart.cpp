@@ -10,6 +10,7 @@
 
 #include "msml/core/atomic_file.hpp"
 #include "msml/core/error.hpp"
+#include "msml/core/formula.hpp"
 #include "msml/run/program.hpp"
 #include "msml/study/fit.hpp"
 
@@ -84,7 +85,9 @@ class Drawing {
     std::string text = head();
     for (std::size_t i = 0; i < curves_.size(); ++i) text += data(i);
     const std::string failures = failed();
-    text += labels() + triangles() + failures + "plot ";
+    text += labels() + triangles() + limits() + theory() + failures + "plot ";
+    for (std::size_t k = 0; k < chart_.theory.size(); ++k)
+      text += fmt::format("$theory{} with lines lw 1.5 dt 2 lc rgb \"#707070\" notitle, \\\n     ", k);
     for (std::size_t i = 0; i < curves_.size(); ++i) text += (i == 0 ? "" : ", \\\n     ") + plot(i);
     return text +
            (failures.empty() ? "" : ", \\\n     $failed with points pt 2 ps 1.4 lw 2 lc rgb \"#B00000\" notitle") +
@@ -144,12 +147,10 @@ class Drawing {
   }
 
   std::string label(const std::string& column) const {
-    const auto unit = style_.units.find(column);
+    const auto known = style_.labels.find(column);
     std::string name = column;
     std::replace(name.begin(), name.end(), '_', ' ');
-    return unit == style_.units.end() || unit->second.empty() || unit->second == "1"
-               ? name
-               : fmt::format("{} [{}]", name, unit->second);
+    return known == style_.labels.end() ? name : known->second;
   }
 
   std::string head() const {
@@ -281,6 +282,36 @@ class Drawing {
       text += fmt::format("set label \"{:.3g}\" at graph {:.4f},{:.4f} left tc rgb \"#606060\"\n", slope,
                           left + 0.35 * width, foot + 0.62 * height + (slope < 0 ? 0.05 : -0.05));
       left += width + 0.05;
+    }
+    return text;
+  }
+
+  /// Dashed lines across at the values of x that theory names.
+  std::string limits() const {
+    std::string text;
+    for (const double x : chart_.limits)
+      if (const double share = x_.log && x <= 0 ? -1 : x_.share(x); share > 0 && share < 1)
+        text += fmt::format(
+            "set arrow from graph {0:.4f},0 to graph {0:.4f},1 nohead lw 1.5 dt 2 lc rgb \"#707070\"\n"
+            "set label \"{1:.3g}\" at graph {0:.4f}, graph 0.03 left offset 0.3,0 tc rgb \"#707070\"\n",
+            share, x);
+    return text;
+  }
+
+  /// Samples of the lines that theory gives, where they lie inside the chart.
+  std::string theory() const {
+    constexpr int samples = 200;
+    std::string text;
+    for (std::size_t k = 0; k < chart_.theory.size(); ++k) {
+      const Function line(chart_.theory[k], "theory", {}, chart_.where);
+      text += fmt::format("$theory{} << EOD\n", k);
+      for (int i = 0; i <= samples; ++i) {
+        const double s = static_cast<double>(i) / samples;
+        const double x = x_.log ? x_.low * std::pow(x_.high / x_.low, s) : x_.low + s * (x_.high - x_.low);
+        const double y = line({x, 0, 0}, 0);
+        if (y >= y_.low && y <= y_.high) text += fmt::format("{:.8g} {:.8g}\n", x, y);
+      }
+      text += "EOD\n";
     }
     return text;
   }

@@ -12,8 +12,8 @@ namespace msml {
 
 /// What a chart needs to know of its table.
 struct ChartStyle {
-  std::map<std::string, std::string> units;  ///< by column; shown at the axes
-  bool joined = true;                        ///< points of a curve are joined by lines
+  std::map<std::string, std::string> labels;  ///< of axes, by column; else the column's name
+  bool joined = true;                         ///< points of a curve are joined by lines
 };
 
 /// A gnuplot script with its data inside: curves in the colours of Okabe and Ito (2008, jfly.uni-koeln.de/color) with

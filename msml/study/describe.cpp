@@ -198,6 +198,10 @@ Part<Chart> chart_tag() {
       {.optional = true, .doc = "rows that are drawn: 'load=twist'; ';' between them where a value holds blanks"});
   const auto slopes = tag.parameter<std::vector<double>>(
       "slopes", {.fallback = std::vector<double>{}, .doc = "slopes to be drawn as triangles: -0.667 …"});
+  const auto theory = tag.parameter<Formulas>(
+      "theory", {.fallback = Formulas{}, .doc = "lines to be drawn: y as formulas in X, the value of x"});
+  const auto limits = tag.parameter<std::vector<double>>(
+      "limits", {.fallback = std::vector<double>{}, .doc = "values of x to be marked, such as a largest stable step"});
   const auto title = tag.parameter<std::string>("title", {.optional = true, .doc = "above the chart"});
   tag.build([=](const Record& record) {
     return [=](const FaultSink& fault) {
@@ -209,6 +213,8 @@ Part<Chart> chart_tag() {
                   .only = {},
                   .axes = {},
                   .slopes = record[slopes],
+                  .theory = record[theory],
+                  .limits = record[limits],
                   .where = record.where};
       if (record.has(only)) chart.only = parse_settings(record[only], record.where, fault);
       chart.id = record.has(id) ? record[id] : chart.y + "_over_" + chart.x;
@@ -306,6 +312,11 @@ std::vector<std::string> Study::variables() const {
 
 bool Study::timed() const {
   return std::any_of(measures.begin(), measures.end(), [](const Measure& m) { return m.quantity == Quantity::time; });
+}
+
+bool Study::alone() const {
+  return timed() || std::any_of(measures.begin(), measures.end(),
+                                [](const Measure& m) { return m.quantity == Quantity::memory && m.what == "peak"; });
 }
 
 int Study::repetitions() const { return !timed() ? 1 : repeat > 0 ? repeat : 5; }

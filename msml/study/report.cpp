@@ -52,6 +52,25 @@ std::map<std::string, std::string> column_units(const Study& study) {
   return units;
 }
 
+std::map<std::string, std::string> column_labels(const Study& study) {
+  std::map<std::string, std::string> labels;
+  for (const Measure& m : study.measures) {
+    std::string& label = labels[m.id];
+    const std::string relative = m.relative ? "relative " : "";
+    if (m.quantity == Quantity::error)
+      label = fmt::format("{}{} error of {}", relative, m.what, m.field);
+    else if (m.quantity == Quantity::probe && m.against_truth)
+      label = fmt::format("{}error at {}", relative, m.of);
+    else if (m.quantity == Quantity::time)
+      label = m.what == "step"    ? "time of one step [s]"
+              : m.what == "total" ? "time of all nodes [s]"
+                                  : fmt::format("time of {} [s]", m.what);
+    else
+      label = m.unit.empty() || m.unit == "1" ? m.id : fmt::format("{} [{}]", m.id, m.unit);
+  }
+  return labels;
+}
+
 std::string study_json(const Study& study, const Table& table, const std::string& scene, const std::string& units,
                        const StudyOptions& options, const Sharing& sharing, double seconds) {
   Json json{{"program", "msml"},

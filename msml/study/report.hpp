@@ -14,6 +14,9 @@ std::string machine();
 /// Units by column: "s" and "bytes" of measures.
 std::map<std::string, std::string> column_units(const Study& study);
 
+/// What stands at the axes of charts: "relative RMS error of displacement", "time of one step [s]".
+std::map<std::string, std::string> column_labels(const Study& study);
+
 /// Study, scene, units, settings, versions, machine, and one object per row with numbers as numbers.
 std::string study_json(const Study& study, const Table& table, const std::string& scene, const std::string& units,
                        const StudyOptions& options, const Sharing& sharing, double seconds);

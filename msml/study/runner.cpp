@@ -232,7 +232,7 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < (study.timed() ? 1 : options.jobs); ++i) others.emplace_back(work);
+    for (int i = 1; i < (study.alone() ? 1 : options.jobs); ++i) others.emplace_back(work);
     work();
   }
   write_whole(options.folder / "results.csv", to_csv(table));

@@ -61,6 +61,8 @@ struct Chart {
   Settings only;                   ///< rows that are drawn: those with these values; empty: all
   Axes axes;
   std::vector<double> slopes;  ///< triangles to be drawn
+  Formulas theory;             ///< y over X, drawn as dashed lines
+  std::vector<double> limits;  ///< values of x, drawn as dashed lines
   Location where;
 };
 
@@ -81,6 +83,7 @@ struct Study {
   Location where;
   /// Names of the variables, in the order of the columns.
   std::vector<std::string> variables() const;
+  bool alone() const;       ///< what is measured asks for runs one after another
   bool timed() const;       ///< a time is measured
   int repetitions() const;  ///< passes over each run
 };

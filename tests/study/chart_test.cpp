@@ -57,9 +57,20 @@ TEST(Chart, NamesItsCurvesAndMarksWhatFailed) {
 TEST(Chart, TimesHaveErrorBars) {
   Chart chart = study().charts[0];
   chart.x = "time";
-  const std::string script = gnuplot_script(convergence(), chart, {.units = {{"time", "s"}}});
+  const std::string script = gnuplot_script(convergence(), chart, {.labels = {{"time", "time [s]"}}});
   EXPECT_THAT(script, HasSubstr("xerrorbars"));
   EXPECT_THAT(script, HasSubstr("set xlabel \"time [s]\""));
+}
+
+TEST(Chart, ShowsWhatTheoryKnows) {
+  Chart chart = study().charts[0];
+  chart.theory = {Formula("0.4*(X/100)^(-2/3)")};
+  chart.limits = {1000, 1e9};
+  const std::string script = gnuplot_script(convergence(), chart, {});
+  EXPECT_THAT(script, HasSubstr("$theory0 << EOD\n"));
+  EXPECT_THAT(script, HasSubstr("plot $theory0 with lines"));
+  EXPECT_THAT(script, HasSubstr("set label \"1e+03\""));
+  EXPECT_THAT(script, Not(HasSubstr("set label \"1e+09\""))) << "outside the chart";
 }
 
 TEST(Chart, WordsStandInARow) {

@@ -83,6 +83,22 @@ TEST(StudyRun, ErrorsAreTakenAgainstAnotherSetting) {
   EXPECT_LT(ran.table.number(1, "tip_error"), 0.2);
 }
 
+TEST(StudyRun, ErrorsAreTakenAgainstAFile) {
+  const tiny::Folder folder;
+  Mesh mesh;  // one node at the top, sunk by rho g L^2 / (2 E)
+  mesh.points.resize(1, 3);
+  mesh.points << 2, 2, 4 - 0.08;
+  const int node = 0;
+  mesh.add_cell(CellKind::vertex, &node);
+  mesh.point_fields.push_back({"displacement", 3, {0, 0, -0.08}});
+  real_language().write(Value{std::make_shared<const Mesh>(mesh)}, folder.path() / "top.vtu");
+  const Ran ran = run(R"(<study id="s"> <vary variable="n" values="2"/> <vary variable="kind" values="tet10"/>
+    <reference file="top.vtu"/> <measure id="error" error="maximum"/></study>)",
+                      folder);
+  EXPECT_EQ(ran.table.text(0, "reason"), "");
+  EXPECT_LT(ran.table.number(0, "error"), 1e-9);  // exact with quadratic elements
+}
+
 TEST(StudyRun, WhatDoesNotVaryIsComputedOnce) {
   const tiny::Folder folder;
   const Ran ran =
