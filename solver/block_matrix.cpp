@@ -27,38 +27,66 @@ int Pattern::find(int row, int column) const {
   return static_cast<int>(std::lower_bound(first, last, column) - columns.begin());
 }
 
+namespace {
+
+/// The elements of each node: of[first[n]], …, of[first[n + 1] - 1].
+struct ElementsOfNodes {
+  std::vector<int> first, of;
+};
+
+ElementsOfNodes elements_of_nodes(int count, const std::vector<int>& element_nodes, int nodes) {
+  ElementsOfNodes list{std::vector<int>(static_cast<std::size_t>(count) + 1, 0),
+                       std::vector<int>(element_nodes.size())};
+  for (const int node : element_nodes) ++list.first[static_cast<std::size_t>(node) + 1];
+  for (std::size_t i = 1; i < list.first.size(); ++i) list.first[i] += list.first[i - 1];
+  std::vector<int> fill(list.first.begin(), list.first.end() - 1);
+  for (std::size_t k = 0; k < element_nodes.size(); ++k)
+    list.of[static_cast<std::size_t>(fill[static_cast<std::size_t>(element_nodes[k])]++)] = static_cast<int>(k) / nodes;
+  return list;
+}
+
+/// Columns of a run of rows, one row after the other, and how many each has.
+struct Rows {
+  std::vector<int> columns, sizes;
+};
+
+}  // namespace
+
 PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int nodes,
                         const std::vector<std::array<int, 2>>& links) {
-  const std::size_t elements = element_nodes.size() / static_cast<std::size_t>(nodes);
-  std::vector<int> first(static_cast<std::size_t>(count) + 1, 0);
-  for (const int node : element_nodes) ++first[static_cast<std::size_t>(node) + 1];
-  for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
-  std::vector<int> elements_of(element_nodes.size()), fill(first.begin(), first.end() - 1);
-  for (std::size_t e = 0; e < elements; ++e)
-    for (int a = 0; a < nodes; ++a)
-      elements_of[static_cast<std::size_t>(fill[static_cast<std::size_t>(element_nodes[e * nodes + a])]++)] =
-          static_cast<int>(e);
+  const ElementsOfNodes elements = elements_of_nodes(count, element_nodes, nodes);
   std::vector<std::array<int, 2>> linked;  // row, column
   for (const auto& [a, b] : links) linked.insert(linked.end(), {{a, b}, {b, a}});
   std::sort(linked.begin(), linked.end());
-  auto link = linked.begin();
+  constexpr int piece = 2048;
+  std::vector<Rows> pieces(static_cast<std::size_t>((count + piece - 1) / piece));
+  tbb::parallel_for(std::size_t(0), pieces.size(), [&](std::size_t k) {
+    Rows& rows = pieces[k];
+    std::vector<int> row;
+    const int begin = static_cast<int>(k) * piece;
+    for (int r = begin; r < std::min(count, begin + piece); ++r) {
+      row.assign(1, r);
+      for (int i = elements.first[static_cast<std::size_t>(r)]; i < elements.first[static_cast<std::size_t>(r) + 1];
+           ++i) {
+        const auto e = element_nodes.begin() + static_cast<long>(elements.of[static_cast<std::size_t>(i)]) * nodes;
+        row.insert(row.end(), e, e + nodes);
+      }
+      for (auto link = std::lower_bound(linked.begin(), linked.end(), std::array<int, 2>{r, 0});
+           link != linked.end() && (*link)[0] == r; ++link)
+        row.push_back((*link)[1]);
+      std::sort(row.begin(), row.end());
+      row.erase(std::unique(row.begin(), row.end()), row.end());
+      rows.columns.insert(rows.columns.end(), row.begin(), row.end());
+      rows.sizes.push_back(static_cast<int>(row.size()));
+    }
+  });
   auto pattern = std::make_shared<Pattern>();
   pattern->offsets.reserve(static_cast<std::size_t>(count) + 1);
-  std::vector<int> row;
-  for (int r = 0; r < count; ++r) {
-    row.assign(1, r);
-    for (int k = first[static_cast<std::size_t>(r)]; k < first[static_cast<std::size_t>(r) + 1]; ++k) {
-      const auto e = element_nodes.begin() + static_cast<long>(elements_of[static_cast<std::size_t>(k)]) * nodes;
-      row.insert(row.end(), e, e + nodes);
-    }
-    for (; link != linked.end() && (*link)[0] == r; ++link) row.push_back((*link)[1]);
-    std::sort(row.begin(), row.end());
-    row.erase(std::unique(row.begin(), row.end()), row.end());
-    const auto self = std::lower_bound(row.begin(), row.end(), r) - row.begin();
-    pattern->diagonal.push_back(static_cast<int>(pattern->columns.size()) + static_cast<int>(self));
-    pattern->columns.insert(pattern->columns.end(), row.begin(), row.end());
-    pattern->offsets.push_back(static_cast<int>(pattern->columns.size()));
+  for (const Rows& rows : pieces) {
+    pattern->columns.insert(pattern->columns.end(), rows.columns.begin(), rows.columns.end());
+    for (const int size : rows.sizes) pattern->offsets.push_back(pattern->offsets.back() + size);
   }
+  for (int r = 0; r < count; ++r) pattern->diagonal.push_back(pattern->find(r, r));
   return pattern;
 }
 

@@ -14,6 +14,17 @@ using ElementMass = Eigen::Matrix<double, nodes, nodes>;
 template <int dimension, int nodes>
 ElementMass<nodes> consistent_mass(const Points& points, const int* ids, double density) {
   static const Rule<dimension> rule = rule_of_size<dimension>(Simplex<dimension, nodes>::quadratic ? 4 : 2);
+  static const ElementMass<nodes> unit = [] {
+    ElementMass<nodes> sum = ElementMass<nodes>::Zero();
+    for (const auto& q : rule) {
+      const auto N = Simplex<dimension, nodes>::values(q.xi);
+      for (int a = 0; a < nodes; ++a)
+        for (int b = 0; b < nodes; ++b) sum(a, b) += q.weight * N[a] * N[b];
+    }
+    return sum;
+  }();
+  if (straight<dimension, nodes>(points, ids))
+    return density * jacobian<dimension, nodes>(points, ids, rule.front().xi).determinant() * unit;
   ElementMass<nodes> M = ElementMass<nodes>::Zero();
   for (const auto& q : rule) {
     const auto N = Simplex<dimension, nodes>::values(q.xi);

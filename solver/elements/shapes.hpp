@@ -91,6 +91,20 @@ Jacobian<dimension> jacobian(const Points& points, const int* ids, const std::ar
   return J;
 }
 
+/// True if the Jacobian is the same everywhere, to round-off: mid nodes halve straight edges.
+template <int dimension, int nodes>
+bool straight(const Points& points, const int* ids) {
+  using Shape = Simplex<dimension, nodes>;
+  for (int a = Shape::corners; a < nodes; ++a) {
+    const auto [i, j] = Shape::edges[static_cast<std::size_t>(a - Shape::corners)];
+    const auto first = points.row(ids[i]), second = points.row(ids[j]);
+    if ((2 * points.row(ids[a]) - first - second).cwiseAbs().maxCoeff() >
+        1e-14 * (first.cwiseAbs().maxCoeff() + second.cwiseAbs().maxCoeff()))
+      return false;
+  }
+  return true;
+}
+
 /// The reference position of a point of an element.
 template <int dimension, int nodes>
 Vec3 place(const Points& points, const int* ids, const std::array<double, dimension>& xi) {

@@ -66,9 +66,13 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b)
         batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
+    const bool same = straight<dimension, nodes>(positions_, ids);
+    Jacobian<dimension> J, inverse;
     for (std::size_t q = 0; q < count; ++q) {
-      const Jacobian<dimension> J = jacobian<dimension, nodes>(positions_, ids, places[q].xi);
-      const Jacobian<dimension> inverse = J.inverse();
+      if (q == 0 || !same) {
+        J = jacobian<dimension, nodes>(positions_, ids, places[q].xi);
+        inverse = J.inverse();
+      }
       for (int k = 0; k < dimension * dimension; ++k)
         batch.points[q].inverse[k][lane] = inverse(k / dimension, k % dimension);
       batch.points[q].weight[lane] = lane < batch.count ? places[q].weight * J.determinant() * thickness_ : 0.0;
@@ -150,7 +154,7 @@ Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatrix& mass) const {
-  for (const Batch& batch : batches_)
+  const auto add = [&](const Batch& batch) {
     for (int lane = 0; lane < batch.count; ++lane) {
       int ids[nodes];
       for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
@@ -160,6 +164,11 @@ void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatri
       for (int k = 0; k < nodes * nodes; ++k)
         mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
     }
+  };
+  for (const auto& chunks : colours_)
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b) add(batches_[static_cast<std::size_t>(b)]);
+    });
 }
 
 template <int dimension, int nodes, int count>
