@@ -75,7 +75,7 @@ class Lines(unittest.TestCase):
             read_line = table.read_csv(path)[0]
         for name, value in line.items():
             if isinstance(value, float):
-                self.assertAlmostEqual(read_line[name], value, delta=1e-4 * abs(value), msg=name)
+                self.assertAlmostEqual(float(read_line[name]), value, delta=1e-4 * abs(value), msg=name)
             else:
                 self.assertEqual(str(read_line[name]).removesuffix(".0"), str(value), msg=name)
         self.assertEqual(table.losses([read_line], [read_line]), [])
