@@ -1,81 +1,153 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cantilever of the comparison with other programs: one run, one line.
-// usage: beam_bench static|step KIND N NU direct|blockJacobi|incompleteCholesky|multigrid [THREADS [STEPS]]
+// The cantilever of the comparison with other programs: one run, one line of JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "msml/core/error.hpp"
 #include "msml/run/memory.hpp"
+#include "solver/materials/hyperelastic.hpp"
+#include "solver/materials/neo_hookean.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace {
 
 using namespace msml;
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* usage =
+    "usage: beam_bench WORK KIND N NU SOLVER [THREADS [COUNT]]\n"
+    "  WORK    static: small strain; neo: neo-Hookean equilibrium; step: co-rotated implicit Euler, dt = 1/30\n"
+    "  KIND    tet4, tet10 or tet10SR\n"
+    "  N       5 N x N x N cubes of six tetrahedra\n"
+    "  NU      Poisson's ratio\n"
+    "  SOLVER  automatic, direct, multigrid, incompleteCholesky, blockJacobi\n"
+    "  COUNT   time steps (60), or load steps of neo (1)\n";
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<long>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+struct Choice {
+  std::string work, kind;
+  int n = 4;
+  double poisson_ratio = 0.3;
+  std::string solver;
+  int threads = 2, count = 0;  ///< 0: as the usage says
+};
+
+Choice read(const std::vector<std::string>& words) {
+  Choice choice{words.at(0), words.at(1), std::stoi(words.at(2)), std::stod(words.at(3)), words.at(4)};
+  if (words.size() > 5) choice.threads = std::stoi(words[5]);
+  if (words.size() > 6) choice.count = std::stoi(words[6]);
+  return choice;
 }
 
 void choose_solver(const std::string& name, fe::Settings& settings) {
+  if (name == "automatic") return;
   settings.linear_solver = name == "direct" ? fe::LinearSolver::direct : fe::LinearSolver::cg;
-  if (name == "blockJacobi") settings.preconditioner = fe::Preconditioner::block_jacobi;
-  if (name == "incompleteCholesky") settings.preconditioner = fe::Preconditioner::incomplete_cholesky;
-  if (name == "multigrid") settings.preconditioner = fe::Preconditioner::multigrid;
+  if (name == "direct") return;
+  const std::map<std::string, fe::Preconditioner> preconditioners{
+      {"blockJacobi", fe::Preconditioner::block_jacobi},
+      {"incompleteCholesky", fe::Preconditioner::incomplete_cholesky},
+      {"multigrid", fe::Preconditioner::multigrid}};
+  settings.preconditioner = preconditioners.at(name);
+}
+
+/// mu/2 (J^(-2/3) I1 - 3) + K/2 (J - 1)^2 with the moduli of E = 1e5.
+std::shared_ptr<const fe::Law> neo_hookean(double poisson_ratio) {
+  const fe::Lame lame = fe::lame_of(1e5, poisson_ratio);
+  return std::make_shared<fe::PotentialLaw<fe::IsochoricNeoHookean>>(
+      fe::IsochoricNeoHookean<fe::Lanes>{fe::lanes_of(lame.mu)}, fe::make_volumetric("J1", lame.bulk()),
+      fe::LawFacts{.name = "neoHookean", .shear_modulus = lame.mu, .poisson_ratio = poisson_ratio});
+}
+
+fe::Model model_of(const Choice& choice) {
+  const bool step = choice.work == "step";
+  fe::Model model = fe::testing::beam_model(choice.n, choice.kind == "tet4" ? CellKind::tet4 : CellKind::tet10,
+                                            choice.poisson_ratio, step ? fe::Strain::corotated : fe::Strain::small);
+  if (choice.work == "neo") model.regions[0].law = neo_hookean(choice.poisson_ratio);
+  if (choice.kind == "tet10SR") model.formulation = fe::Formulation::single_rotation;
+  fe::Settings& settings = model.settings;
+  choose_solver(choice.solver, settings);
+  settings.threads = choice.threads;
+  settings.integrator = step ? fe::Integrator::implicit_euler : fe::Integrator::static_;
+  if (step) {
+    settings.newton_iterations = 1;
+    settings.linear_tolerance = 1e-6;
+    model.steps[0].dt = 1.0 / 30;
+    model.steps[0].count = choice.count > 0 ? choice.count : 60;
+  } else {
+    settings.linear_tolerance = 1e-8;
+    settings.load_steps = std::max(1, choice.count);
+  }
+  return model;
+}
+
+void add_steps(std::vector<double> times, Json& json) {
+  if (times.size() < 2) return;
+  json["first"] = times[0];
+  times.erase(times.begin());
+  std::sort(times.begin(), times.end());
+  json["step"] = times[times.size() / 2];
+  json["worst"] = times.back();
+}
+
+Json run(const Choice& choice) {
+  const fe::Model model = model_of(choice);
+  std::vector<double> times;
+  Vec3 at_13 = Vec3::Zero();
+  const Clock::time_point start = Clock::now();
+  Clock::time_point last = start;
+  double answer = 0;
+  const fe::Outcome outcome = fe::solve(model, [&](const fe::State& state) {
+    if (state.increment > 0) times.push_back(since(last));
+    if (state.increment == 13) at_13 = fe::testing::tip(model, state);
+    answer = since(start);
+    last = Clock::now();
+    return true;
+  });
+  const double total = since(start);
+  const bool step = choice.work == "step";
+  const Vec3 tip = step ? at_13 : fe::testing::tip(model, outcome.state);
+  Json json{{"work", choice.work},
+            {"kind", choice.kind},
+            {"n", choice.n},
+            {"nu", choice.poisson_ratio},
+            {"solver", choice.solver},
+            {"threads", choice.threads},
+            {"elements", model.mesh->cell_count()},
+            {"unknowns", 3 * model.mesh->point_count()},
+            {"tip", {tip[0], tip[1], tip[2]}},
+            {"setup", outcome.seconds_setup},
+            {"assembly", outcome.seconds_assembly},
+            {"linear", outcome.seconds_linear},
+            {"answer", answer},
+            {"total", total}};
+  if (step) add_steps(times, json);
+  json["iterations"] = outcome.cg_iterations;
+  json["solves"] = outcome.linear_solves;
+  json["peak_mb"] = static_cast<double>(peak_memory()) / 1e6;
+  json["matrix_mb"] = static_cast<double>(outcome.matrix_bytes) / 1e6;
+  json["factor_mb"] = static_cast<double>(outcome.factor_bytes) / 1e6;
+  json["failure"] = outcome.stop == fe::Stop::converged ? "" : outcome.diagnosis;
+  return json;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 6) return 2;
-  const std::vector<std::string> words(argv + 1, argv + argc);
-  const CellKind kind = words[1] == "tet4" ? CellKind::tet4 : CellKind::tet10;
-  const bool step = words[0] == "step";
-  fe::Model model = fe::testing::beam_model(std::stoi(words[2]), kind, std::stod(words[3]),
-                                            step ? fe::Strain::corotated : fe::Strain::small);
-  choose_solver(words[4], model.settings);
-  model.settings.threads = words.size() > 5 ? std::stoi(words[5]) : 2;
-  const int steps = words.size() > 6 ? std::stoi(words[6]) : 60;
-  model.settings.integrator = step ? fe::Integrator::implicit_euler : fe::Integrator::static_;
-  if (step) {
-    model.settings.newton_iterations = 1;
-    model.settings.linear_tolerance = 1e-6;
-    model.steps[0].dt = 1.0 / 30;
-    model.steps[0].count = steps;
-  } else {
-    model.settings.linear_tolerance = 1e-8;
+  if (argc < 6) return fmt::print(stderr, "{}", usage), 2;
+  try {
+    const Json json = run(read({argv + 1, argv + argc}));
+    fmt::print("{}\n", json.dump());
+    return json["failure"] == "" ? 0 : 3;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "beam_bench: {}\n{}", error.what(), usage);
+    return 2;
   }
-  std::vector<double> times;
-  Clock::time_point last = Clock::now();
-  const Clock::time_point start = last;
-  Vec3 at_13 = Vec3::Zero();
-  const fe::Outcome outcome = fe::solve(model, [&](const fe::State& state) {
-    if (state.increment > 0) times.push_back(since(last));
-    if (state.increment == 13) at_13 = fe::testing::tip(model, state);
-    last = Clock::now();
-    return true;
-  });
-  const double total = since(start);
-  const Vec3 tip = step ? at_13 : fe::testing::tip(model, outcome.state);
-  fmt::print(
-      "{} {} n={} nu={} {}: unknowns {} tip {:.7f} {:.7f} {:.7f} | total {:.3f} s setup {:.3f} assembly {:.3f} linear "
-      "{:.3f} | "
-      "its {} solves {} | peak {:.0f} MB matrix {:.0f} factor {:.0f}",
-      words[0], words[1], words[2], words[3], words[4], outcome.unknowns, tip[0], tip[1], tip[2], total,
-      outcome.seconds_setup, outcome.seconds_assembly, outcome.seconds_linear, outcome.cg_iterations,
-      outcome.linear_solves, static_cast<double>(peak_memory()) / 1048576,
-      static_cast<double>(outcome.matrix_bytes) / 1048576, static_cast<double>(outcome.factor_bytes) / 1048576);
-  if (step && times.size() > 1) {
-    const std::vector<double> later(times.begin() + 1, times.end());
-    fmt::print(" | first {:.2f} ms median {:.2f} worst {:.2f}", 1e3 * times[0], 1e3 * median(later),
-               1e3 * *std::max_element(later.begin(), later.end()));
-  }
-  fmt::print(" {}\n", outcome.stop == fe::Stop::converged ? "" : outcome.diagnosis);
-  return outcome.stop == fe::Stop::converged ? 0 : 3;
 }
