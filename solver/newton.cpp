@@ -193,8 +193,15 @@ LinearStatus Newton::factor(const Increment& increment) {
   return linear_->factor(effective_, increment.fixed);
 }
 
+double Newton::linear_tolerance(const Vector& right, const Mask& fixed) const {
+  const double asked = model_.settings.linear_tolerance;
+  if (equations_.small_strain() || model_.settings.newton_iterations == 1 || !linear_->iterative()) return asked;
+  const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
+  return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
+}
+
 LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
-  const double tolerance = model_.settings.linear_tolerance;
+  const double tolerance = linear_tolerance(right, increment.fixed);
   if (rigid_free_ && !followers_ && !(increment.slides && !increment.slides->empty()))
     return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
   if (!followers_) return linear_->solve(right, tolerance, step);

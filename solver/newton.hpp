@@ -80,6 +80,9 @@ class Newton {
 
  private:
   LinearStatus factor(const Increment& increment);
+  /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
+  /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025).
+  double linear_tolerance(const Vector& right, const Mask& fixed) const;
   LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);

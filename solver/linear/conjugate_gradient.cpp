@@ -60,6 +60,7 @@ class ConjugateGradient final : public LinearSystem {
     return LinearStatus::done;
   }
 
+  bool iterative() const override { return true; }
   std::size_t factor_bytes() const override {
     return inverse_.size() * sizeof(double) +
            static_cast<std::size_t>(incomplete_.matrixL().nonZeros()) * (sizeof(double) + sizeof(int));

@@ -97,6 +97,7 @@ class WithFallback final : public LinearSystem {
   }
 
   LinearStatus probe() override { return active_->probe(); }
+  bool iterative() const override { return active_->iterative(); }
   std::size_t factor_bytes() const override { return active_->factor_bytes(); }
 
  private:

@@ -42,6 +42,8 @@ class LinearSystem {
   virtual void place(const Vector& /*displacement*/) {}
   /// Looks once more, where factor() has not, whether the matrix taken last is positive definite.
   virtual LinearStatus probe() { return LinearStatus::done; }
+  /// True if a solution costs more the smaller its tolerance is.
+  virtual bool iterative() const { return false; }
   virtual std::size_t factor_bytes() const = 0;
   /// Negative eigenvalues of the matrix factorised last (Sylvester's law of inertia); 0 unless made by make_indefinite.
   virtual long negative_pivots() const { return 0; }

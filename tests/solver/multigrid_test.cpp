@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "solver/equations.hpp"
+#include "solver/linear/multigrid/multigrid.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace msml::fe {
@@ -84,6 +86,34 @@ TEST(Multigrid, DoesNotDependOnTheNumberOfThreads) {
   const Outcome one = run(model);
   model.settings.threads = 2;
   EXPECT_EQ((one.state.displacement - run(model).state.displacement).cwiseAbs().maxCoeff(), 0);
+}
+
+// The second set-up keeps the grids. All steps are linear in the matrix: half the solution of the same residual.
+TEST(Multigrid, IsSetUpAgainForAnotherMatrix) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+    const Model model = beam_model(kind == CellKind::tet4 ? 9 : 6, kind, 0.3, Strain::small);
+    const Equations equations(model);
+    const Vector zero = Vector::Zero(equations.size());
+    BlockMatrix A(equations.elements().pattern());
+    Forces forces;
+    equations.evaluate(zero, {}, Want::tangent, forces, &A);
+    const Mask fixed = make_supports(model.steps[0], equations.numbering(), zero).fixed;
+    Multigrid grids(equations.geometry());
+    std::vector<float> r(static_cast<std::size_t>(equations.size()) + 8, 1.0f), once(r.size()), again(r.size());
+    for (std::size_t k = 0; k < fixed.size(); ++k)
+      if (fixed[k]) r[k] = 0;
+    ASSERT_EQ(grids.set(A, fixed), LinearStatus::done);
+    grids.cycle(r, once);
+    for (double& value : A.values) value *= 2;
+    ASSERT_EQ(grids.set(A, fixed), LinearStatus::done);
+    grids.cycle(r, again);
+    float largest = 0, off = 0;
+    for (std::size_t k = 0; k < fixed.size(); ++k) {
+      largest = std::max(largest, std::abs(once[k]));
+      off = std::max(off, std::abs(once[k] - 2 * again[k]));
+    }
+    EXPECT_LT(off, 1e-3f * largest);  // single precision
+  }
 }
 
 // A beam pressed past its buckling load: straight, it is in equilibrium, which is not stable.

@@ -139,10 +139,8 @@ void galerkin(const Blocks<double, B, B>& A, const Blocks<double, B, 6>& P, cons
   AP.sparsity = product_sparsity(A.sparsity, P.sparsity);
   AP.allocate();
   multiply(A, P, AP);
-  if (coarse.sparsity.rows() == 0) {
-    coarse.sparsity = product_sparsity(P_transposed.sparsity, AP.sparsity);
-    coarse.allocate();
-  }
+  if (coarse.sparsity.rows() == 0) coarse.sparsity = product_sparsity(P_transposed.sparsity, AP.sparsity);
+  coarse.allocate();
   multiply(P_transposed, AP, coarse);
   for_rows(coarse.sparsity.rows(), 256, [&](int r) {
     for (int p = coarse.sparsity.offsets[at(r)]; p < coarse.sparsity.offsets[at(r + 1)]; ++p)

@@ -39,11 +39,12 @@ class MultigridSolver final : public LinearSystem {
     double size = std::sqrt(dot(b_, b_)), before = std::numeric_limits<double>::infinity();
     r_ = b_;
     while (size > target) {
-      const int limit = fresh_ ? limit_fresh : 2 * usual_ + 10;
+      const double decades = std::max(1.0, std::log10(size / target));
+      const int limit = fresh_ ? limit_fresh : static_cast<int>(2 * usual_ * decades) + 10;
       int taken = 0;
       const LinearStatus status = iterate(target, limit, x, taken);
-      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = taken;
-      stale_ = !fresh_ && taken > usual_ + usual_ / 2 + 2;
+      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = taken / decades;
+      stale_ = !fresh_ && taken > 1.5 * usual_ * decades + 2;
       if (status == LinearStatus::limit && fresh_) return status;
       if (status == LinearStatus::not_positive_definite && fresh_) return status;
       if (status != LinearStatus::done) {
@@ -70,6 +71,7 @@ class MultigridSolver final : public LinearSystem {
     return solve(right, 1e-6, unused);
   }
 
+  bool iterative() const override { return true; }
   std::size_t factor_bytes() const override { return grids_.bytes(); }
 
  private:
@@ -155,7 +157,7 @@ class MultigridSolver final : public LinearSystem {
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   bool usable_ = false, fresh_ = false, stale_ = false;
-  int usual_ = 0;  ///< iterations of the first solve after the last set-up
+  double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve after the last set-up
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
   Vector b_, r_, z_, p_, q_;
