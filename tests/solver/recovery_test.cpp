@@ -110,7 +110,7 @@ TEST(Recovery, FromAFullTwistInOneLongTimeStepAfterTheOther) {
 
 TEST(Recovery, ARestInAnotherShapeIsWarnedOf) {
   const auto warned = [](const Outcome& outcome) {
-    return std::any_of(outcome.notes.begin(), outcome.notes.end(),
+    return std::any_of(outcome.warnings.begin(), outcome.warnings.end(),
                        [](const std::string& text) { return text.find("another equilibrium") != std::string::npos; });
   };
   int tangled = 0;
