@@ -7,18 +7,20 @@
 namespace msml::fe {
 
 IncrementResult Newton::walk(const Increment& increment) {
+  // Full steps that blow the body up end with a singular matrix too: that says nothing about the body.
   const auto final = [this](const IncrementResult& result) {
-    return result.stop == Stop::converged || result.stop == Stop::singular || result.stop == Stop::out_of_memory ||
-           model_.settings.newton_iterations == 1;
+    return result.stop == Stop::converged || (result.stop == Stop::singular && searching_) ||
+           result.stop == Stop::out_of_memory || model_.settings.newton_iterations == 1;
   };
   searching_ = false;
   IncrementResult direct = run(increment);
+  const bool plain = !model_.settings.line_search && direct.stop == Stop::singular, done = plain || final(direct);
   searching_ = model_.settings.line_search;
-  if (!final(direct) && searching_) {
+  if (!done && searching_) {
     tangent_current_ = false;
     direct = run(increment);
   }
-  if (final(direct)) return direct;
+  if (done || final(direct)) return direct;
   evaluate(increment, increment.start, want_, false);
   const Vector unbalanced = this->residual(increment);
   Increment part = increment;

@@ -271,6 +271,13 @@ void Newton::move(const Vector& velocity, const Vector& acceleration, const Bloc
 
 void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations_.size()); }
 
+bool Newton::exploded(const IncrementResult& result) const {
+  const std::vector<double>& norms = result.residuals;
+  // Full steps are tried first, and given up early.
+  return norms.back() > 1e12 * (norms.front() + result.scale) ||
+         (!searching_ && norms.back() > 1e8 * std::max(norms[0], norms[1]));
+}
+
 Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
   const Stop state = state_verdict();
   if (state != Stop::converged) return state;
@@ -355,12 +362,11 @@ IncrementResult Newton::run(const Increment& increment) {
       insist_definite_ = true;
       evaluate(increment, u, want_, false);
     }
-    last_step_ = share == 1 && !definite_taken_ ? step.cwiseAbs().maxCoeff() : std::numeric_limits<double>::infinity();
+    last_step_ = definite_taken_ ? std::numeric_limits<double>::infinity() : step.cwiseAbs().maxCoeff();
     residual = free_residual(increment);
     note_residual(increment, residual, result);
     if (accepted(increment, result)) return result.stop = verdict(increment, result), result;
-    if (!residual.allFinite() || result.residuals.back() > 1e12 * (result.residuals.front() + result.scale))
-      return result.stop = Stop::diverged, result;
+    if (!residual.allFinite() || exploded(result)) return result.stop = Stop::diverged, result;
   }
   result.stop = Stop::newton_limit;
   return result;

@@ -96,6 +96,7 @@ class Newton {
   double residual_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   bool indefinite(LinearStatus status) const;
   bool accepted(const Increment& increment, const IncrementResult& result) const;
+  bool exploded(const IncrementResult& result) const;
   double round_off(const Vector& u) const;
   void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
   Stop verdict(const Increment& increment, IncrementResult& result);
@@ -116,11 +117,11 @@ class Newton {
   bool barrier_ = false;          ///< a law does not survive inversion
   bool rigid_free_ = false;       ///< the matrix is singular, as nothing holds the body
   bool insist_definite_ = false;  ///< the exact tangent led nowhere in the last iteration
-  double last_step_ = 0;          ///< largest entry of the last step, if it was a full one with the exact tangent
-  std::vector<char> survives_;    ///< of each cell: its law survives inversion
-  bool definite_taken_ = false;   ///< the last step came from the semidefinite tangent
-  bool indefinite_ = false;       ///< the last exact tangent was not that of a stable equilibrium
-  double round_off_ = 0;          ///< norm of the residual that round-off in the strains alone can leave
+  double last_step_ = 0;  ///< largest entry of the last step before the line search; infinite without the exact tangent
+  std::vector<char> survives_;   ///< of each cell: its law survives inversion
+  bool definite_taken_ = false;  ///< the last step came from the semidefinite tangent
+  bool indefinite_ = false;      ///< the last exact tangent was not that of a stable equilibrium
+  double round_off_ = 0;         ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;
   double seconds_assembly_ = 0, seconds_linear_ = 0;
 };

@@ -58,8 +58,8 @@ bool Newton::accepted(const Increment& increment, const IncrementResult& result)
   // Nor do more iterations help where round-off of the largest forces met is all that is left.
   const std::size_t count = result.residuals.size();
   if (count >= 3 && norm <= 1e-12 * result.largest_scale && norm > 0.5 * result.residuals[count - 2]) return true;
-  // Where all forces vanish in the end they are no scale: a full step of exact Newton that is tiny beside the way gone
-  // is the last one. Its own square is what is left then.
+  // Where all forces vanish in the end they are no scale: an exact Newton step that is tiny beside the way gone is the
+  // last one, however much of it the line search took where round-off hides the energy.
   if (last_step_ == 0 || result.residuals.size() < 3) return false;
   const double way = std::max(increment.start.cwiseAbs().maxCoeff(), result.u.cwiseAbs().maxCoeff());
   return last_step_ <= 0.01 * tolerance * way && norm <= tolerance * result.largest_scale;

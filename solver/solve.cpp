@@ -9,6 +9,7 @@
 
 #include "solver/check_answer.hpp"
 #include "solver/integrators/stepper.hpp"
+#include "solver/other_rest.hpp"
 
 namespace msml::fe {
 namespace {
@@ -45,6 +46,8 @@ Outcome run_model(const Model& model, const Observer& observer) {
   newton.report(outcome);
   outcome.state = run.state();
   outcome.check = check_answer(run);
+  if (std::string warning = warning_of_other_rest(run, outcome.check); !warning.empty())
+    outcome.warnings.push_back(std::move(warning));
   return outcome;
 }
 

@@ -62,6 +62,15 @@ void check_chart(Work& work, const Study& study, const Chart& chart) {
   for (const std::string& name : chart.group) known(name, variables, "group");
 }
 
+void check_extrapolation(Work& work, const Study& study) {
+  if (!study.truth || study.truth->extrapolate.empty()) return;
+  const std::string& name = study.truth->extrapolate;
+  for (const Vary& vary : study.vary)
+    if (vary.variables.size() == 1 && vary.variables.front() == name && vary.values.size() >= 3) return;
+  work.fault(study.truth->where,
+             fmt::format("extrapolate = {}: no <vary> gives this variable three values or more", quoted_value(name)));
+}
+
 void check_study(Work& work, const Study& study, const FaultSink& fault) {
   std::set<std::string> columns{"unknowns", "status", "reason", "key", share_column};
   for (const Vary& vary : study.vary)
@@ -72,6 +81,7 @@ void check_study(Work& work, const Study& study, const FaultSink& fault) {
     }
   if (study.truth)
     for (const auto& [name, value] : study.truth->set) check_variable(work, name, study.truth->where);
+  check_extrapolation(work, study);
   for (const Measure& measure : study.measures) {
     if (!columns.insert(measure.id).second)
       fault(measure.where, fmt::format("two columns are called {}: give one an id", quoted_value(measure.id)));

@@ -58,7 +58,8 @@ Part<Vary> vary_tag() {
 }
 
 Part<Truth> reference_tag() {
-  Part<Truth> tag("reference", "reference", "What errors are taken against: one of set, file, expression.");
+  Part<Truth> tag("reference", "reference",
+                  "What errors are taken against: one of set, file, expression, extrapolate.");
   const auto set = tag.parameter<std::string>(
       "set", {.optional = true,
               .doc = "the same scene with other values: 'n=16 quadratic=true'; ';' between them "
@@ -67,14 +68,19 @@ Part<Truth> reference_tag() {
   const auto expression = tag.parameter<Formulas>(
       "expression", {.optional = true, .doc = "the exact field, a formula in X, Y, Z, t for each component"});
   const auto time = tag.parameter("time", {.unit = "time", .fallback = 0.0, .doc = "value of t in expression"});
+  const auto extrapolate = tag.parameter<std::string>(
+      "extrapolate", {.optional = true,
+                      .doc = "a variable that varies from coarse to fine: probes and values are held against the limit "
+                             "of their last three"});
   tag.build([=](const Record& record) {
     return [=](const FaultSink& fault) {
       Truth truth{
           .set = {}, .file = text_of(record, file), .expected = {}, .time = record[time], .where = record.where};
       if (record.has(set)) truth.set = parse_settings(record[set], record.where, fault);
       if (record.has(expression)) truth.expected = record[expression];
-      if (record.has(set) + record.has(file) + record.has(expression) != 1)
-        fault(record.where, "reference needs one of set, file, expression");
+      truth.extrapolate = text_of(record, extrapolate);
+      if (record.has(set) + record.has(file) + record.has(expression) + record.has(extrapolate) != 1)
+        fault(record.where, "reference needs one of set, file, expression, extrapolate");
       return truth;
     };
   });
@@ -92,7 +98,8 @@ MeasureKeys describe_measure(Description& tag) {
   k.error = tag.parameter<std::string>(
       "error", {.optional = true,
                 .choices = {"RMS", "L2", "H1", "maximum"},
-                .doc = "of a field against the reference; RMS and maximum at the reference's nodes"});
+                .doc = "of a field against the reference; RMS and maximum at the reference's nodes; with probe or "
+                       "value: the error of that number"});
   k.field = tag.parameter<std::string>("field", {.fallback = "displacement", .doc = "of the error"});
   k.relative =
       tag.parameter<bool>("relative", {.fallback = true, .doc = "divide the error by the norm of the reference"});
@@ -137,7 +144,7 @@ int choose_quantity(const Record& record, const MeasureKeys& k, Measure& m) {
   if (record.has(k.error)) {
     m.what = record[k.error];
     m.against_truth = true;
-    if (!record.has(k.probe)) ++chosen, m.quantity = Quantity::error;
+    if (!record.has(k.probe) && !record.has(k.value)) ++chosen, m.quantity = Quantity::error;
     m.unit = record[k.relative] ? "1" : "";
   }
   if (m.quantity == Quantity::probe) m.what = text_of(record, k.component);
@@ -157,7 +164,7 @@ std::string default_name(const Measure& m) {
     case Quantity::probe:
       return fmt::format("{}{}{}{}", m.against_truth ? "error_" : "", m.of, m.what.empty() ? "" : "_", m.what);
     default:
-      return m.of;
+      return (m.against_truth ? "error_" : "") + m.of;
   }
 }
 
@@ -300,6 +307,12 @@ Study make_study(const Record& record, const FaultSink& fault) {
   for (const Record* each : record.of_category("vary")) study.vary.push_back(build<Vary>(*each, fault));
   for (const Record* each : record.of_category("reference")) study.truth = build<Truth>(*each, fault);
   for (const Record* each : record.of_category("measure")) study.measures.push_back(build<Measure>(*each, fault));
+  for (Measure& m : study.measures) {
+    const bool limit = m.against_truth && study.truth && !study.truth->extrapolate.empty();
+    m.extrapolated = limit && m.quantity != Quantity::error;
+    if (limit && !m.extrapolated)
+      fault(m.where, "an extrapolated reference serves errors of a probe or a value, not those of a field");
+  }
   for (const Record* each : record.of_category("chart")) study.charts.push_back(build<Chart>(*each, fault));
   return study;
 }

@@ -156,8 +156,8 @@ double length(const std::vector<double>& row) {
 
 double probe(const Measure& wanted, const Finished& finished, const Finished* reference) {
   const std::vector<double> found = last_row(finished, wanted);
-  if (!wanted.against_truth) return found.size() == 1 ? found.front() : length(found);
-  if (!reference) throw Error("the error of a probe needs <reference set=…>");
+  if (!wanted.against_truth || wanted.extrapolated) return found.size() == 1 ? found.front() : length(found);
+  if (!reference) throw Error("the error of a probe needs <reference set=…> or extrapolate");
   const std::vector<double> exact = last_row(*reference, wanted);
   if (exact.size() != found.size()) throw Error("the probe has other columns in the reference");
   std::vector<double> difference(found.size());
@@ -186,6 +186,15 @@ double plain_value(const Measure& wanted, const Finished& finished) {
   return std::get<double>(convert(value, Type::number));
 }
 
+/// A number of a task, or how far it is from that of the reference.
+double task_value(const Measure& wanted, const Finished& finished, const Finished* reference) {
+  const double found = plain_value(wanted, finished);
+  if (!wanted.against_truth || wanted.extrapolated) return found;
+  if (!reference) throw Error("the error of a value needs <reference set=…> or extrapolate");
+  const double exact = plain_value(wanted, *reference);
+  return std::abs(found - exact) / (wanted.relative ? std::abs(exact) : 1);
+}
+
 double raw(const Measure& wanted, const StudyRun& run, const Finished& finished, const Finished* reference,
            const Registry& registry) {
   switch (wanted.quantity) {
@@ -202,7 +211,7 @@ double raw(const Measure& wanted, const StudyRun& run, const Finished& finished,
     case Quantity::energy:
       return energy_drift(wanted, finished);
     default:
-      return plain_value(wanted, finished);
+      return task_value(wanted, finished, reference);
   }
 }
 

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "msml/core/atomic_file.hpp"
+#include "msml/study/extrapolate.hpp"
 #include "msml/study/measure.hpp"
 
 namespace msml {
@@ -141,9 +142,10 @@ class Runner {
       const auto& samples = row.samples[i];
       const bool timed = study_.measures[i].quantity == Quantity::time;
       if (samples.empty()) {
-        cells.insert(cells.end(), timed ? 3 : 1, "");
+        cells.insert(cells.end(), timed ? 3 : study_.measures[i].extrapolated ? 2 : 1, "");
         continue;
       }
+      if (study_.measures[i].extrapolated) cells.emplace_back();  // filled once all runs are over
       cells.push_back(digits(median(samples)));
       if (!timed) continue;
       cells.push_back(digits(*std::min_element(samples.begin(), samples.end())));
@@ -196,6 +198,7 @@ std::vector<std::string> study_columns(const Study& study) {
   for (const Measure& each : study.measures) {
     columns.push_back(each.id);
     if (each.quantity == Quantity::time) columns.insert(columns.end(), {each.id + "_low", each.id + "_high"});
+    if (each.extrapolated) columns.push_back(each.id + "_value");
   }
   columns.insert(columns.end(), {"reason", "key"});
   return columns;
@@ -235,6 +238,7 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
     for (int i = 1; i < (study.alone() ? 1 : options.jobs); ++i) others.emplace_back(work);
     work();
   }
+  extrapolate(study, table);
   write_whole(options.folder / "results.csv", to_csv(table));
   if (!options.keep) {
     std::error_code ignored;

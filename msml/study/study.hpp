@@ -22,12 +22,14 @@ struct Vary {
 /// A setting of variables, name by name.
 using Settings = std::vector<std::pair<std::string, std::string>>;
 
-/// What errors are taken against: the same scene with other settings, a file, or a formula per component.
+/// What errors are taken against: the same scene with other settings, a file, a formula per component, or the limit
+/// that a number tends to.
 struct Truth {
   Settings set;
-  std::string file;   ///< relative to the scene's folder
-  Formulas expected;  ///< in X, Y, Z, t
-  double time = 0;    ///< value of t in expected
+  std::string file;         ///< relative to the scene's folder
+  Formulas expected;        ///< in X, Y, Z, t
+  double time = 0;          ///< value of t in expected
+  std::string extrapolate;  ///< variable whose values go from coarse to fine
   Location where;
 };
 
@@ -42,6 +44,7 @@ struct Measure {
   std::string of;     ///< scene output or task; "": the first series of the scene
   bool relative = true;
   bool against_truth = false;  ///< of a probe: its error
+  bool extrapolated = false;   ///< its error is found once all runs are over; ID_value holds the number itself
   std::string unit;            ///< "s", "bytes", "1" or ""
   Location where;
 };

@@ -35,7 +35,7 @@ double tolerable_step(double period) { return -std::log(1 - tolerable_damping) *
 
 std::vector<std::string> check_warnings(const Simulation& simulation, const fe::Outcome& outcome,
                                         const WorstShape& worst) {
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = outcome.warnings;
   const fe::Check& check = outcome.check;
   warn_of_locking(simulation, warnings);
   if (simulation.body.small_strain && check.largest_rotation > small_rotation)

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <random>
@@ -87,6 +88,43 @@ TEST(Recovery, ACollapsedEquilibriumIsNamed) {
   EXPECT_EQ(point.stop, Stop::collapsed) << name(point.stop) << point.diagnosis;
   EXPECT_THAT(point.diagnosis, HasSubstr("worst element"));
   EXPECT_THAT(point.diagnosis, HasSubstr("form=\"stable\""));
+}
+
+// A time step so long that full Newton steps blow the body up: the line search leads it home.
+TEST(Recovery, FromAFullTwistInOneLongTimeStepAfterTheOther) {
+  for (const char* form : forms) {
+    Model model = bar(form, [](const Vec3& X) {
+      const double a = 2 * M_PI * X[0] / 3, y = X[1] - 0.5, z = X[2] - 0.5;
+      return Vec3(X[0], 0.5 + std::cos(a) * y - std::sin(a) * z, 0.5 + std::sin(a) * y + std::cos(a) * z);
+    });
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    model.settings.integrator = Integrator::implicit_euler;
+    model.steps[0].dt = 0.5;
+    model.steps[0].count = 40;
+    model.steps[0].gravity = Vec3::Zero();
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, Stop::converged) << form << ": " << outcome.diagnosis;
+    EXPECT_LT(outcome.state.displacement.rowwise().norm().maxCoeff() / 3, 1e-6) << form;
+  }
+}
+
+TEST(Recovery, ARestInAnotherShapeIsWarnedOf) {
+  const auto warned = [](const Outcome& outcome) {
+    return std::any_of(outcome.warnings.begin(), outcome.warnings.end(),
+                       [](const std::string& text) { return text.find("another equilibrium") != std::string::npos; });
+  };
+  int tangled = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    std::mt19937 engine(seed);
+    std::uniform_real_distribution<double> place(-1, 2);
+    const Outcome outcome =
+        solve(bar("cubic", [&](const Vec3&) { return Vec3(place(engine), place(engine), place(engine)); }), {});
+    if (outcome.stop != Stop::converged) continue;
+    const bool off = outcome.state.displacement.rowwise().norm().maxCoeff() > 0.1;
+    EXPECT_EQ(warned(outcome), off);
+    tangled += off;
+  }
+  EXPECT_GT(tangled, 0);
 }
 
 }  // namespace

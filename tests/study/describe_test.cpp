@@ -68,7 +68,9 @@ TEST(StudyLanguage, WhatMakesNoSenseIsRefusedBeforeAnythingRuns) {
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure/>"),
             "s.xml:5: measure needs one of error, time, memory, iterations, probe, value, energy");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<reference set=\"h=1\" file=\"a.tet\"/>"),
-            "s.xml:5: reference needs one of set, file, expression");
+            "s.xml:5: reference needs one of set, file, expression, extrapolate");
+  EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1 2\"/>\n<reference extrapolate=\"h\"/>"),
+            "s.xml:5: extrapolate = h: no <vary> gives this variable three values or more");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>", "id=\"a b\""),
             "s.xml:3: id = 'a b' names a folder: no blanks, dots, slashes, quotes, braces or *");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1 2\"/><vary variable=\"kind\" values=\"fast\"/>",

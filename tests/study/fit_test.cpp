@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "msml/core/error.hpp"
+#include "msml/study/extrapolate.hpp"
 
 namespace msml {
 namespace {
@@ -46,6 +47,21 @@ TEST(Reaches, FindsTheCrossingOnTheStraightLineOfTheLogarithms) {
   EXPECT_NEAR(*reaches(points, 0.01), 100, 1e-9);
   EXPECT_FALSE(reaches(points, 1e-5)) << "never reached";
   EXPECT_FALSE(reaches(points, 2)) << "below from the start";
+}
+
+TEST(Richardson, FindsTheLimitAndTheOrder) {
+  // f = 3 + 2 h^1.7 at sizes that do not halve
+  const std::array<double, 3> h{0.5, 0.3, 0.1};
+  const auto limit =
+      richardson(h, {3 + 2 * std::pow(0.5, 1.7), 3 + 2 * std::pow(0.3, 1.7), 3 + 2 * std::pow(0.1, 1.7)});
+  ASSERT_TRUE(limit);
+  EXPECT_NEAR(limit->value, 3, 1e-12);
+  EXPECT_NEAR(limit->order, 1.7, 1e-10);
+}
+
+TEST(Richardson, HasNoLimitForValuesThatSwing) {
+  EXPECT_FALSE(richardson({1, 0.5, 0.25}, {1, 2, 1.5}));
+  EXPECT_FALSE(richardson({1, 0.5, 0.25}, {1, 2, 3})) << "steps that do not shrink";
 }
 
 TEST(Table, SurvivesItsCsv) {

@@ -99,6 +99,22 @@ TEST(StudyRun, ErrorsAreTakenAgainstAFile) {
   EXPECT_LT(ran.table.number(0, "error"), 1e-9);  // exact with quadratic elements
 }
 
+TEST(StudyRun, ErrorsAreTakenAgainstTheLimitOfFinerSettings) {
+  const tiny::Folder folder;
+  const std::string study = R"(<study id="s"> <vary variable="n" values="2 4 8"/> <reference extrapolate="n"/>
+    <measure id="tip" probe="tip" component="z" error="RMS"/></study>)";
+  const Ran ran = run(study, folder);
+  // Where sizes halve, Richardson's limit is that of Aitken's process.
+  const auto value = [&](std::size_t row) { return ran.table.number(row, "tip_value"); };
+  const double first = value(1) - value(0), second = value(2) - value(1);
+  const double limit = value(2) - second * second / (second - first);
+  EXPECT_NEAR(limit, -0.08, 2e-5);  // the exact value, met to a fourth of the last step
+  for (std::size_t row = 0; row < 3; ++row)
+    EXPECT_NEAR(ran.table.number(row, "tip"), std::abs(value(row) - limit) / std::abs(limit), 1e-7);  // ten digits
+  EXPECT_GT(ran.table.number(0, "tip"), ran.table.number(1, "tip"));
+  EXPECT_EQ(run(study, folder, ran.table).table.rows, ran.table.rows) << "rows of an earlier session";
+}
+
 TEST(StudyRun, WhatDoesNotVaryIsComputedOnce) {
   const tiny::Folder folder;
   const Ran ran =

@@ -85,11 +85,16 @@ double simulation_seconds(const Json& log) {
   return sum;
 }
 
-std::string last_line(const std::string& text) {
-  std::string line, last;
+/// The first fault of a place in the scene that the program named, or else its last line.
+std::string fault(const std::string& text) {
+  std::string last;
   std::istringstream lines(text);
-  while (std::getline(lines, line))
+  for (std::string line; std::getline(lines, line);) {
+    const bool placed = line.find(".msml.xml:") != std::string::npos;
+    if (placed && line.find(": warning:") == std::string::npos && line.find(" does not run: ") == std::string::npos)
+      return line.size() > 320 ? line.substr(0, 320) + " …" : line;
     if (!line.empty()) last = line;
+  }
   return last;
 }
 
@@ -114,7 +119,7 @@ Row run_once(const Program& program, const Case& each, const Method& method,
   try {
     const int code = execute(program, scene_file(program, each, method, folder), set, folder);
     const std::string output = content(folder / "output.txt");
-    if (code != method.exit_code) throw std::runtime_error(fmt::format("exit code {}: {}", code, last_line(output)));
+    if (code != method.exit_code) throw std::runtime_error(fmt::format("exit code {}: {}", code, fault(output)));
     if (!method.says.empty() && output.find(method.says) == std::string::npos)
       throw std::runtime_error(fmt::format("does not say '{}'", method.says));
     const Json log = Json::parse(content(folder / "log.json"));

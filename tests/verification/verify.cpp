@@ -6,6 +6,7 @@
 #include <iostream>
 
 #include "tests/verification/cases.hpp"
+#include "tests/verification/matrix.hpp"
 #include "tests/verification/runs.hpp"
 #include "tests/verification/table.hpp"
 
@@ -14,12 +15,13 @@ using namespace msml::verification;
 namespace {
 
 int usage() {
-  std::cerr << "usage: verify PROGRAM FOLDER RESULTS [--smoke] [--only TEXT]\n"
+  std::cerr << "usage: verify PROGRAM FOLDER RESULTS [--smoke] [--only TEXT] [--matrix]\n"
                "  PROGRAM  the msml program\n"
                "  FOLDER   holds cases.json and the scenes\n"
                "  RESULTS  where table.md, table.csv and each run's files go\n"
                "  --smoke  the quick cases alone\n"
-               "  --only   the cases with TEXT in their name\n";
+               "  --only   the cases with TEXT in their name\n"
+               "  --matrix instead every law with every element and integration, to matrix.md\n";
   return 2;
 }
 
@@ -38,6 +40,7 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   try {
     const Program program{words[0], words[1], words[2]};
+    if (std::find(words.begin(), words.end(), "--matrix") != words.end()) return write_matrix(program) > 0 ? 1 : 0;
     for (const Case& each : read_cases(program.scenes / "cases.json")) {
       if (!wanted(each, smoke, text)) continue;
       for (const Method& method : each.methods) {
