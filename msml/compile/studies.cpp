@@ -58,6 +58,7 @@ void check_chart(Work& work, const Study& study, const Chart& chart) {
   };
   known(chart.x, columns, "x");
   if (chart.y != share_column) known(chart.y, columns, "y");
+  if (!chart.color.empty()) known(chart.color, columns, "color");
   for (const auto& [name, value] : chart.only) known(name, variables, "only");
   for (const std::string& name : chart.group) known(name, variables, "group");
 }

@@ -10,9 +10,10 @@
 
 #include "msml/core/atomic_file.hpp"
 #include "msml/core/error.hpp"
-#include "msml/core/formula.hpp"
 #include "msml/run/program.hpp"
+#include "msml/study/axes.hpp"
 #include "msml/study/fit.hpp"
+#include "msml/study/map.hpp"
 
 namespace msml {
 namespace {
@@ -21,73 +22,41 @@ constexpr std::array<const char*, 8> colours{"#0072B2", "#D55E00", "#009E73", "#
                                              "#E69F00", "#56B4E9", "#000000", "#8C8C00"};
 constexpr std::array<int, 8> marks{7, 5, 9, 11, 13, 6, 4, 8};
 
-/// One axis: where its values lie, and how they map to 0 … 1.
-struct Axis {
-  bool log = false;
-  double low = 0, high = 1;
-  double share(double value) const {
-    return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
-  }
-};
-
-Axis axis_over(std::vector<double> values, bool log, double margin) {
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  Axis axis{log, *least, *most};
-  if (log) {
-    const double pad = std::max(margin * std::log(axis.high / axis.low), 0.1);
-    return {log, axis.low * std::exp(-pad), axis.high * std::exp(pad)};
-  }
-  double pad = margin * (axis.high - axis.low);
-  if (pad == 0) pad = axis.high != 0 ? 0.1 * std::abs(axis.high) : 1;
-  return {log, axis.low - pad, axis.high + pad};
-}
-
-/// A text inside double quotes of gnuplot, without markup.
-std::string quoted(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text)
-    if (c == '\n')
-      out += "\\n";
-    else
-      out += (c == '"' || c == '\\') ? std::string("\\") + c : std::string(1, c);
-  return out + "\"";
-}
-
 class Drawing {
  public:
   Drawing(const Table& table, const Chart& chart, const ChartStyle& style)
       : table_(filtered(table, chart.only)), chart_(chart), style_(style) {
     name_positions();
     if (chart_.y == share_column) add_shares();
-    const bool log = chart.axes.log_x || chart.axes.log_y;
+    const bool log = chart_.axes.log_x || chart_.axes.log_y;
     curves_ = curves(table_, chart.x, chart.y, chart.group, log);
-    if (!chart.axes.log_x || !chart.axes.log_y) keep_fitting();
+    if (!chart_.axes.log_x || !chart_.axes.log_y) keep_fitting();
     if (has_bars(chart.x)) sort_by_row();
     std::vector<double> xs, ys;
     for (const Curve& curve : curves_)
       for (const Point& point : curve.points) {
         xs.push_back(point.x), ys.push_back(point.y);
         for (const char* end : {"_low", "_high"}) {
-          add(xs, point.row, chart.x + end, chart.axes.log_x);
-          add(ys, point.row, chart.y + end, chart.axes.log_y);
+          add(xs, point.row, chart.x + end, chart_.axes.log_x);
+          add(ys, point.row, chart.y + end, chart_.axes.log_y);
         }
       }
     if (xs.empty())
       throw Error(fmt::format("chart '{}': no run has both {} and {} as numbers{}", chart.id, chart.x, chart.y,
                               log ? " > 0" : ""));
     for (std::size_t row = 0; row < table_.rows.size(); ++row)
-      if (!table_.done(row)) add(xs, row, chart.x, chart.axes.log_x);
-    x_ = axis_over(xs, chart.axes.log_x, 0.06);
-    y_ = axis_over(ys, chart.axes.log_y, 0.08);
+      if (!table_.done(row)) add(xs, row, chart.x, chart_.axes.log_x);
+    x_ = axis_over(xs, chart_.axes.log_x, 0.06);
+    y_ = axis_over(ys, chart_.axes.log_y, 0.08);
   }
 
   std::string script() {
-    std::string text = head();
+    std::string text = chart_head(chart_, {x_, y_}, style_, name_width());
+    if (!words_.empty()) text += word_tics();
     for (std::size_t i = 0; i < curves_.size(); ++i) text += data(i);
     const std::string failures = failed();
-    text += labels() + triangles() + limits() + theory() + failures + "plot ";
-    for (std::size_t k = 0; k < chart_.theory.size(); ++k)
-      text += fmt::format("$theory{} with lines lw 1.5 dt 2 lc rgb \"#707070\" notitle, \\\n     ", k);
+    text += labels() + triangles() + limit_lines(chart_, x_) + theory_lines(chart_, {x_, y_}) + failures + "plot ";
+    text += theory_plots(chart_);
     for (std::size_t i = 0; i < curves_.size(); ++i) text += (i == 0 ? "" : ", \\\n     ") + plot(i);
     return text +
            (failures.empty() ? "" : ", \\\n     $failed with points pt 2 ps 1.4 lw 2 lc rgb \"#B00000\" notitle") +
@@ -125,6 +94,13 @@ class Drawing {
     table_.columns.emplace_back(share_column);
   }
 
+  std::string word_tics() const {
+    std::string tics;
+    for (std::size_t i = 0; i < words_.size(); ++i)
+      tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(words_[i]), i + 1);
+    return "set xtics (" + tics + ") noenhanced\n";
+  }
+
   /// curves() keeps positive numbers only where any axis is logarithmic: here only those that their own axis can show.
   void keep_fitting() {
     curves_ = curves(table_, chart_.x, chart_.y, chart_.group, false);
@@ -144,60 +120,6 @@ class Drawing {
   void add(std::vector<double>& values, std::size_t row, const std::string& column, bool log) const {
     const double value = table_.number(row, column);
     if (std::isfinite(value) && (!log || value > 0)) values.push_back(value);
-  }
-
-  std::string label(const std::string& column) const {
-    const auto known = style_.labels.find(column);
-    std::string name = column;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    return known == style_.labels.end() ? name : known->second;
-  }
-
-  std::string head() const {
-    std::string text = fmt::format(
-        "# SPDX-License-Identifier: GPL-3.0-or-later\n"
-        "# Drawn by gnuplot: gnuplot -e \"format='png'\" {0}.gp, or without -e for SVG.\n"
-        "if (!exists(\"format\")) format = \"svg\"\n"
-        "if (format eq \"png\") {{ set terminal pngcairo size 1200,840 font \"Sans,15\"; set output "
-        "\"{0}.png\" }}"
-        " else {{ set terminal svg size 800,560 font \"Sans,14\" background \"#ffffff\"; set output "
-        "\"{0}.svg\" }}\n",
-        chart_.id);
-    text +=
-        fmt::format("set encoding utf8\nset title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\n",
-                    quoted(chart_.title), quoted(label(chart_.x)), quoted(label(chart_.y)));
-    if (x_.log) text += "set logscale x\n";
-    if (y_.log) text += "set logscale y\n";
-    text += tics("x", x_) + tics("y", y_);
-    if (!words_.empty()) {
-      std::string tics;
-      for (std::size_t i = 0; i < words_.size(); ++i)
-        tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(words_[i]), i + 1);
-      text += "set xtics (" + tics + ") noenhanced\n";
-    }
-    return text +
-           fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", x_.low, x_.high, y_.low, y_.high) +
-           fmt::format(
-               "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset "
-               "key\n"
-               "set rmargin {}\n",
-               name_width());
-  }
-
-  /// Labels at powers of ten over more than three decades, else at 1, 2, 5, … of each.
-  static std::string tics(const char* axis, const Axis& range) {
-    if (!range.log) return {};
-    if (range.high / range.low > 1000) return fmt::format("set format {} \"10^{{%T}}\"\n", axis);
-    std::string all;
-    for (int power = static_cast<int>(std::floor(std::log10(range.low))); std::pow(10, power) <= range.high; ++power)
-      for (const int digit : {1, 2, 3, 4, 5, 6, 7, 8, 9}) {
-        const double value = digit * std::pow(10.0, power);
-        const bool labelled = digit == 1 || digit == 2 || digit == 5 || range.high / range.low < 6;
-        if (value >= range.low && value <= range.high)
-          all += fmt::format("{}{} {:.6g} {}", all.empty() ? "" : ", ",
-                             labelled ? fmt::format("\"{:.6g}\"", value) : "\"\"", value, labelled ? 0 : 1);
-      }
-    return fmt::format("set {}tics ({})\n", axis, all);
   }
 
   std::size_t name_width() const {
@@ -287,35 +209,6 @@ class Drawing {
   }
 
   /// Dashed lines across at the values of x that theory names.
-  std::string limits() const {
-    std::string text;
-    for (const double x : chart_.limits)
-      if (const double share = x_.log && x <= 0 ? -1 : x_.share(x); share > 0 && share < 1)
-        text += fmt::format(
-            "set arrow from graph {0:.4f},0 to graph {0:.4f},1 nohead lw 1.5 dt 2 lc rgb \"#707070\"\n"
-            "set label \"{1:.3g}\" at graph {0:.4f}, graph 0.03 left offset 0.3,0 tc rgb \"#707070\"\n",
-            share, x);
-    return text;
-  }
-
-  /// Samples of the lines that theory gives, where they lie inside the chart.
-  std::string theory() const {
-    constexpr int samples = 200;
-    std::string text;
-    for (std::size_t k = 0; k < chart_.theory.size(); ++k) {
-      const Function line(chart_.theory[k], "theory", {}, chart_.where);
-      text += fmt::format("$theory{} << EOD\n", k);
-      for (int i = 0; i <= samples; ++i) {
-        const double s = static_cast<double>(i) / samples;
-        const double x = x_.log ? x_.low * std::pow(x_.high / x_.low, s) : x_.low + s * (x_.high - x_.low);
-        const double y = line({x, 0, 0}, 0);
-        if (y >= y_.low && y <= y_.high) text += fmt::format("{:.8g} {:.8g}\n", x, y);
-      }
-      text += "EOD\n";
-    }
-    return text;
-  }
-
   /// Runs that did not end well, as crosses on the lower axis.
   std::string failed() {
     std::string points;
@@ -345,7 +238,7 @@ class Drawing {
 }  // namespace
 
 std::string gnuplot_script(const Table& table, const Chart& chart, const ChartStyle& style) {
-  return Drawing(table, chart, style).script();
+  return chart.color.empty() ? Drawing(table, chart, style).script() : map_script(table, chart, style);
 }
 
 std::string draw(const Table& table, const Chart& chart, const ChartStyle& style, const std::filesystem::path& folder) {

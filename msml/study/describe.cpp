@@ -194,8 +194,8 @@ Part<Chart> chart_tag() {
   Part<Chart> tag("chart", "chart", "A picture of one column over another.");
   const auto id = tag.parameter<std::string>("id", {.optional = true, .doc = "name of the files; default: y_over_x"});
   const auto x = tag.parameter<std::string>("x", {.doc = "a variable, unknowns or a measure"});
-  const auto y =
-      tag.parameter<std::string>("y", {.doc = "a measure; or share: of the values of x, those that are not larger"});
+  const auto y = tag.parameter<std::string>(
+      "y", {.doc = "a measure; of a map a variable; or share: of the values of x, those that are not larger"});
   const auto group =
       tag.parameter<Words>("group", {.fallback = Words{}, .doc = "variables whose values make the curves"});
   const auto scale = tag.parameter<std::string>(
@@ -205,6 +205,16 @@ Part<Chart> chart_tag() {
       {.optional = true, .doc = "rows that are drawn: 'load=twist'; ';' between them where a value holds blanks"});
   const auto slopes = tag.parameter<std::vector<double>>(
       "slopes", {.fallback = std::vector<double>{}, .doc = "slopes to be drawn as triangles: -0.667 …"});
+  const auto color = tag.parameter<std::string>(
+      "color", {.optional = true,
+                .doc = "makes a map of two variables, x and y: each run a cell, coloured by this error "
+                       "and by whether it ended well"});
+  const auto accurate = tag.parameter(
+      "accurate", {.range = positive(), .fallback = 0.05, .doc = "of a map: errors up to this are accurate"});
+  const auto wrong =
+      tag.parameter("wrong", {.range = positive(),
+                              .fallback = 1.0,
+                              .doc = "of a map: errors above this are wrong results that nothing told of"});
   const auto theory = tag.parameter<Formulas>(
       "theory", {.fallback = Formulas{}, .doc = "lines to be drawn: y as formulas in X, the value of x"});
   const auto limits = tag.parameter<std::vector<double>>(
@@ -220,6 +230,9 @@ Part<Chart> chart_tag() {
                   .only = {},
                   .axes = {},
                   .slopes = record[slopes],
+                  .color = text_of(record, color),
+                  .accurate = record[accurate],
+                  .wrong = record[wrong],
                   .theory = record[theory],
                   .limits = record[limits],
                   .where = record.where};

@@ -57,7 +57,7 @@ class Writer {
   void slopes() {
     Cells cells{{"y", "over x", "curve", "slope", "95 % confidence", "runs"}};
     for (const Chart& chart : study_.charts) {
-      if (!chart.axes.log_x || !chart.axes.log_y) continue;
+      if (!chart.axes.log_x || !chart.axes.log_y || !chart.color.empty()) continue;
       for (const Curve& curve : curves(filtered(table_, chart.only), chart.x, chart.y, chart.group, true))
         if (const auto fit = fitted_slope(curve.points))
           cells.push_back({chart.y, chart.x, name_of(chart, curve), fmt::format("{:.2f}", fit->slope),

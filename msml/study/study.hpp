@@ -64,6 +64,9 @@ struct Chart {
   Settings only;                   ///< rows that are drawn: those with these values; empty: all
   Axes axes;
   std::vector<double> slopes;  ///< triangles to be drawn
+  std::string color;           ///< of a map: the measure that decides; "" for curves
+  double accurate = 0.05;      ///< of a map: errors up to this are accurate
+  double wrong = 1;            ///< of a map: errors above this are nonsense that nothing warned of
   Formulas theory;             ///< y over X, drawn as dashed lines
   std::vector<double> limits;  ///< values of x, drawn as dashed lines
   Location where;

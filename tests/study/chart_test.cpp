@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "msml/core/error.hpp"
+#include "msml/study/map.hpp"
 #include "msml/study/page.hpp"
 #include "tests/compile/scenes.hpp"
 
@@ -71,6 +72,35 @@ TEST(Chart, ShowsWhatTheoryKnows) {
   EXPECT_THAT(script, HasSubstr("plot $theory0 with lines"));
   EXPECT_THAT(script, HasSubstr("set label \"1e+03\""));
   EXPECT_THAT(script, Not(HasSubstr("set label \"1e+09\""))) << "outside the chart";
+}
+
+TEST(Map, ColoursEachRunByItsFate) {
+  const Table table{{"dt", "k", "error", "status"},
+                    {{"1", "1", "0.01", "done"},
+                     {"10", "1", "0.2", "done"},
+                     {"1", "100", "", "not converged"},
+                     {"10", "100", "7", "done"}}};
+  Chart chart{.id = "m",
+              .title = "",
+              .x = "dt",
+              .y = "k",
+              .group = {},
+              .only = {},
+              .axes = {},
+              .slopes = {},
+              .color = "error",
+              .where = {}};
+  EXPECT_EQ(fate(table, 0, chart), Fate::accurate);
+  EXPECT_EQ(fate(table, 1, chart), Fate::inaccurate);
+  EXPECT_EQ(fate(table, 2, chart), Fate::said_so);
+  EXPECT_EQ(fate(table, 3, chart), Fate::wrong);
+  chart.theory = {Formula("10/X")};
+  const std::string script = gnuplot_script(table, chart, {});
+  // Cells meet halfway between the values in the logarithm: at dt = sqrt(10) and k = 10.
+  EXPECT_THAT(script,
+              HasSubstr("from first 0.31622777,0.1 to first 3.1622777,10 behind fs solid border lc rgb \"#FFFFFF\" fc "
+                        "rgb \"#009E73\""));
+  EXPECT_THAT(script, HasSubstr("plot $theory0 with lines"));
 }
 
 TEST(Chart, WordsStandInARow) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Maps: two variables, and what became of each pair of their values.
+#pragma once
+#include "msml/study/chart.hpp"
+
+namespace msml {
+
+/// What became of a run, in the order of the legend.
+enum class Fate : std::uint8_t { accurate, inaccurate, said_so, wrong };
+
+/// Accurate or inaccurate by the error and the chart's bound; a run that stopped with a reason said so; one that ends
+/// well with an error above the chart's `wrong`, or with none, does not.
+Fate fate(const Table& table, std::size_t row, const Chart& chart);
+
+/// A gnuplot script: a cell for each run, coloured by its fate, with the lines of theory over them. Throws Error if x
+/// or y hold no numbers.
+std::string map_script(const Table& table, const Chart& chart, const ChartStyle& style);
+
+}  // namespace msml
