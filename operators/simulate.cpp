@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "msml/core/atomic_file.hpp"
 #include "msml/core/operator.hpp"
@@ -40,23 +41,33 @@ void show_progress(const fe::Model& model, const fe::State& state, Reporter& rep
 
 using Writers = std::vector<std::unique_ptr<simulation::OutputWriter>>;
 
-fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writers& writers, Reporter& reporter) {
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writers& writers, Reporter& reporter,
+                simulation::RunTimes& times) {
+  Clock::time_point start = Clock::now();
   return fe::solve(simulation.model, [&](const fe::State& state) {
+    const Clock::time_point arrived = Clock::now();
+    if (state.increment > 0) times.steps += std::chrono::duration<double>(arrived - start).count();
     StateFields fields(simulation.model, simulation.body, measurer, state);
     for (const auto& writer : writers)
       if (writer->wants(state)) writer->write(state, fields);
     show_progress(simulation.model, state, reporter);
+    times.output += since(arrived);
+    start = Clock::now();
     return true;
   });
 }
 
-void finish(const Simulation& simulation, const fe::Outcome& outcome, const std::filesystem::path& folder,
-            Reporter& reporter) {
+void finish(const Simulation& simulation, const fe::Outcome& outcome, const simulation::RunTimes& times,
+            const std::filesystem::path& folder, Reporter& reporter) {
   const simulation::WorstShape worst = simulation::worst_shape(simulation.body);
   const auto warnings = simulation::check_warnings(simulation, outcome, worst);
   const std::string settings = simulation::settings_json(simulation);
-  const std::string check = simulation::check_json(simulation, outcome, worst, warnings);
-  reporter.print(simulation::check_text(simulation, outcome, worst));
+  const std::string check = simulation::check_json(simulation, outcome, worst, times, warnings);
+  reporter.print(simulation::check_text(simulation, outcome, worst, times));
   for (const std::string& note : outcome.notes) reporter.note(note);
   for (const std::string& warning : warnings) reporter.warn(warning);
   reporter.record("settings", settings);
@@ -70,10 +81,11 @@ void simulate_object(Context& context) {
   simulation.model.check();
   Writers writers = simulation::make_writers(simulation, context.output_folder(), context.reporter());
   const fe::Measurer measurer(simulation.model);
-  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter());
+  simulation::RunTimes times;
+  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter(), times);
   StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
   for (const auto& writer : writers) writer->finish(outcome.state, fields);
-  finish(simulation, outcome, context.output_folder(), context.reporter());
+  finish(simulation, outcome, times, context.output_folder(), context.reporter());
   if (outcome.stop != fe::Stop::converged)
     throw Error(outcome.diagnosis, simulation.where,
                 outcome.stop == fe::Stop::interrupted ? Failure::interrupted : Failure::not_converged);

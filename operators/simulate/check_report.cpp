@@ -2,6 +2,7 @@
 // The check after a run as text and as JSON.
 #include "operators/simulate/check_report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -36,6 +37,8 @@ const char* name(fe::Preconditioner preconditioner) {
       return "blockJacobi";
     case fe::Preconditioner::incomplete_cholesky:
       return "incompleteCholesky";
+    case fe::Preconditioner::multigrid:
+      return "multigrid";
     default:
       return "auto";
   }
@@ -82,6 +85,17 @@ std::string shape_text(const Simulation& simulation, const fe::Check& check, con
   return text;
 }
 
+/// Steps per second are those of the solver alone: neither set-up nor output.
+std::string time_text(const fe::Outcome& outcome, const RunTimes& times, bool dynamic) {
+  const double rest = std::max(0.0, times.steps - outcome.seconds_assembly - outcome.seconds_linear);
+  std::string text = line(
+      "time", fmt::format("{:.3g} s set-up, {:.3g} s assembly, {:.3g} s linear systems, {:.3g} s rest, {:.3g} s output",
+                          outcome.seconds_setup, outcome.seconds_assembly, outcome.seconds_linear, rest, times.output));
+  if (dynamic && outcome.state.increment > 0 && times.steps > 0)
+    text += line("steps per second", fmt::format("{:.4g}", outcome.state.increment / times.steps));
+  return text;
+}
+
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
@@ -94,7 +108,8 @@ Json steps_json(const Simulation& simulation) {
 
 }  // namespace
 
-std::string check_text(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst) {
+std::string check_text(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst,
+                       const RunTimes& times) {
   const fe::Check& check = outcome.check;
   const bool balanced = outcome.stop == fe::Stop::converged || outcome.stop == fe::Stop::interrupted;
   std::string text = fmt::format("check of '{}' at t = {:.6g}", simulation.name, outcome.state.time);
@@ -107,11 +122,11 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
                                               check.lowest_period, 100 * check.damped_per_cycle));
   text += line("unknowns", with_commas(outcome.unknowns));
   text += line("solves", fmt::format("{} of Newton, {} linear", outcome.newton_iterations, outcome.linear_solves));
-  return text;
+  return text + time_text(outcome, times, fe::is_dynamic(simulation.model.settings.integrator));
 }
 
 std::string check_json(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst,
-                       const std::vector<std::string>& warnings) {
+                       const RunTimes& times, const std::vector<std::string>& warnings) {
   const fe::Check& check = outcome.check;
   const Json json{
       {"object", simulation.name},
@@ -144,8 +159,10 @@ std::string check_json(const Simulation& simulation, const fe::Outcome& outcome,
       {"cgIterations", outcome.cg_iterations},
       {"seconds",
        {{"setup", number(outcome.seconds_setup)},
+        {"steps", number(times.steps)},
         {"assembly", number(outcome.seconds_assembly)},
-        {"linear", number(outcome.seconds_linear)}}},
+        {"linear", number(outcome.seconds_linear)},
+        {"output", number(times.output)}}},
       {"bytes", {{"matrix", outcome.matrix_bytes}, {"factor", outcome.factor_bytes}}},
       {"warnings", warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

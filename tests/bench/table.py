@@ -24,7 +24,7 @@ def line_of(row, result, peer_entries, known, machine):
     """One line: `unit` is the time of a step or of a solve, `moved_gb` what the machine's triad moves in that time."""
     line = {name: "" for name in COLUMNS}
     unit = result.get("step", result["answer"])
-    line.update(work=row.work, kind=row.kind, n=row.n or "", nu=row.nu if row.kind else "", method=row.solver, unit=unit,
+    line.update(work=row.work, kind=row.kind, n=row.n or "", nu=row.nu if row.n else "", method=row.solver, unit=unit,
                 wanted=row.wanted, runs=result["runs"], total=result["total"], moved_gb=unit * machine["triad_2"])
     for name in ("unknowns", "setup", "first", "worst", "peak_mb", "rate"):
         line[name] = result.get(name, "")
@@ -116,8 +116,8 @@ def text_of(lines):
     for line in lines:
         short = lambda name, form: format(line[name], form) if line[name] != "" else ""
         method = f"{line['kind']} {'' if line['method'] == 'automatic' else line['method']}".strip()
-        rate = f"{line['rate']:.2f} of raw" if line["rate"] != "" else ""
-        rows.append([line["work"], method or rate, short("n", "d"), short("nu", "g"), short("unknowns", ",.0f"),
+        rate = f"{line['rate']:.2f} of the bare speed" if line["rate"] != "" else ""
+        rows.append([line["work"], f"{method} {rate}".strip(), short("n", "d"), short("nu", "g"), short("unknowns", ",.0f"),
                      *(milliseconds(line[name]) for name in ("setup", "first", "unit", "worst")), short("total", ".2f"),
                      short("peak_mb", ".0f"), short("iterations", ".1f"), short("tip_error", ".0e"),
                      *(short(peer, ".2f") + ("" if line[peer] == "" or peer in line["beside"] else "*") for peer in PEERS),

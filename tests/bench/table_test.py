@@ -6,6 +6,8 @@ import tempfile
 import unittest
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import charts  # noqa: E402
+import kernels  # noqa: E402
 import peers  # noqa: E402
 import rows  # noqa: E402
 import table  # noqa: E402
@@ -83,6 +85,17 @@ class Lines(unittest.TestCase):
     def test_medians_are_of_numbers_and_the_worst_stays_the_worst(self):
         runs = [{"step": s, "worst": w, "solver": "cg"} for s, w in ((1.0, 5.0), (9.0, 20.0), (2.0, 6.0))]
         self.assertEqual(rows.median_of(runs), {"step": 2.0, "worst": 20.0, "solver": "cg", "runs": 3})
+
+    def test_a_power_law_has_its_exponent_as_slope(self):
+        self.assertAlmostEqual(charts.slope([(x, 3 * x ** 1.5) for x in (10, 100, 700)]), 1.5, places=12)
+        self.assertIsNone(charts.slope([(1, 2)]))
+
+    def test_a_kernel_at_half_the_bandwidth_has_half_the_roofline(self):
+        # 100 bytes at 20 GB/s take 5 ns, 10 operations at 50 GFLOP/s 0.2 ns.
+        entry = {"run_name": "x/threads:1/real_time", "real_time": 1e-3, "items": 100, "bytes_per_item": 100,
+                 "flops_per_item": 10}
+        found = kernels.share(entry, {"triad_1": 20, "fma_1": 50})
+        self.assertEqual((found["bound"], round(found["share"], 12)), ("memory", 0.5))
 
 
 if __name__ == "__main__":

@@ -95,7 +95,7 @@ TEST(CheckWarnings, ASliver) {
 
 TEST(CheckReport, ColumnsAreAligned) {
   const auto simulation = simulation_of(0.3);
-  const std::string text = check_text(simulation, harmless(), worst_shape(simulation.body));
+  const std::string text = check_text(simulation, harmless(), worst_shape(simulation.body), {});
   EXPECT_THAT(text, HasSubstr("check of 'cube' at t = 0\n"));
   EXPECT_THAT(text, HasSubstr("\n  smallest J              0.9 (element 3 at (0.375, 0.125, 0.25))\n"));
   EXPECT_THAT(text, HasSubstr("\n  smallest dihedral angle 45 degrees (element "));
@@ -105,9 +105,26 @@ TEST(CheckReport, AStoppedRunShowsItsLastGoodStateWithoutABalance) {
   const auto simulation = simulation_of(0.3);
   auto outcome = harmless();
   outcome.stop = fe::Stop::diverged;
-  const std::string text = check_text(simulation, outcome, worst_shape(simulation.body));
+  const std::string text = check_text(simulation, outcome, worst_shape(simulation.body), {});
   EXPECT_THAT(text, HasSubstr("at t = 0, the last good state (stopped: diverged)\n"));
   EXPECT_THAT(text, testing::Not(HasSubstr("residual")));
+}
+
+TEST(CheckReport, ADynamicRunTellsItsStepsPerSecondAndWhereTheTimeWent) {
+  auto simulation = simulation_of(0.3);
+  auto outcome = harmless();
+  outcome.state.increment = 50;
+  outcome.seconds_setup = 0.5;
+  outcome.seconds_assembly = 0.25;
+  outcome.seconds_linear = 1.5;
+  const simulation::RunTimes times{.steps = 2, .output = 0.125};
+  simulation.model.settings.integrator = fe::Integrator::implicit_euler;
+  const std::string text = check_text(simulation, outcome, worst_shape(simulation.body), times);
+  EXPECT_THAT(text, HasSubstr("\n  time                    0.5 s set-up, 0.25 s assembly, 1.5 s linear systems, 0.25 s "
+                              "rest, 0.125 s output\n  steps per second        25\n"));
+  simulation.model.settings.integrator = fe::Integrator::static_;
+  EXPECT_THAT(check_text(simulation, outcome, worst_shape(simulation.body), times),
+              testing::Not(HasSubstr("per second")));
 }
 
 TEST(CheckReport, JsonHoldsNullForWhatIsNotANumber) {
@@ -115,7 +132,8 @@ TEST(CheckReport, JsonHoldsNullForWhatIsNotANumber) {
   auto outcome = harmless();
   outcome.check.smallest_J = std::numeric_limits<double>::infinity();
   outcome.diagnosis = "a \"quoted\" word";
-  const auto json = nlohmann::json::parse(check_json(simulation, outcome, worst_shape(simulation.body), {"careful"}));
+  const auto json =
+      nlohmann::json::parse(check_json(simulation, outcome, worst_shape(simulation.body), {}, {"careful"}));
   EXPECT_TRUE(json["smallestJ"]["value"].is_null());
   EXPECT_EQ(json["diagnosis"], "a \"quoted\" word");
   EXPECT_EQ(json["warnings"][0], "careful");
