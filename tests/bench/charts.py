@@ -26,7 +26,8 @@ def series_of(lines, beside, x, y):
         if entry.get(x) and entry.get(y):
             name = f"{entry['work']} {entry['kind']} nu {entry['nu']:g}, {entry['peer']} {entry['method']}"
             series.setdefault(name, []).append((entry[x], entry[y]))
-    return {name: sorted(points) for name, points in series.items()}
+    # A lone time of a peer says nothing about growth.
+    return {name: sorted(points) for name, points in series.items() if len(points) > 1 or "," not in name}
 
 
 def draw(path, series, x_label, y_label):
@@ -34,7 +35,7 @@ def draw(path, series, x_label, y_label):
     program = shutil.which("gnuplot")
     if not program or not series:
         return False
-    words = [f"set terminal svg size 900,600; set output '{path}'; set logscale xy; set key outside below; set grid",
+    words = [f"set terminal svg size 1200,600; set output '{path}'; set logscale xy; set key outside right; set grid",
              f"set xlabel '{x_label}'; set ylabel '{y_label}'; set format y '%g'; set format x '%g'"]
     curves = []
     for k, (name, points) in enumerate(series.items()):

@@ -5,8 +5,8 @@ import csv
 from peers import best_of
 
 PEERS = ["SOFA", "VegaFEM", "DOLFINx", "CalculiX", "FEBio"]
-NUMBERS = ["unknowns", "runs", "setup", "assembly", "linear", "first", "unit", "worst", "total", "peak_mb", "iterations", "tip_error",
-           "mesh_error", "moved_gb", "rate", *PEERS, "memory_ratio"]
+NUMBERS = ["unknowns", "runs", "setup", "assembly", "linear", "first", "unit", "worst", "total", "peak_mb",
+           "reported_mb", "solves", "iterations", "tip_error", "mesh_error", "moved_gb", "rate", *PEERS, "memory_ratio"]
 COLUMNS = ["work", "kind", "n", "nu", "method", *NUMBERS, "beside", "wanted"]
 LOSS = 0.2  # a ratio that falls by more is reported
 TIP_DIGITS = 3e-6  # references have six digits, and both sides round
@@ -26,7 +26,7 @@ def line_of(row, result, peer_entries, known, machine):
     unit = result.get("step", result["answer"])
     line.update(work=row.work, kind=row.kind, n=row.n or "", nu=row.nu if row.n else "", method=row.solver, unit=unit,
                 wanted=row.wanted, runs=result["runs"], total=result["total"], moved_gb=unit * machine["triad_2"])
-    for name in ("unknowns", "setup", "assembly", "linear", "first", "worst", "peak_mb", "rate"):
+    for name in ("unknowns", "setup", "assembly", "linear", "first", "worst", "peak_mb", "reported_mb", "solves", "rate"):
         line[name] = result.get(name, "")
     if result.get("solves"):
         line["iterations"] = result["iterations"] / result["solves"]

@@ -11,6 +11,7 @@ import kernels  # noqa: E402
 import peers  # noqa: E402
 import rows  # noqa: E402
 import table  # noqa: E402
+import wishes  # noqa: E402
 
 MACHINE = {"triad_1": 20.0, "triad_2": 40.0}
 
@@ -85,6 +86,12 @@ class Lines(unittest.TestCase):
     def test_medians_are_of_numbers_and_the_worst_stays_the_worst(self):
         runs = [{"step": s, "worst": w, "solver": "cg"} for s, w in ((1.0, 5.0), (9.0, 20.0), (2.0, 6.0))]
         self.assertEqual(rows.median_of(runs), {"step": 2.0, "worst": 20.0, "solver": "cg", "runs": 3})
+
+    def test_a_wish_is_reached_up_to_its_limit(self):
+        line = lambda nu, unit: table.line_of(rows.Row("step", "tet4", 6, nu), {"answer": unit, "total": 1, "runs": 1}, [],
+                                              peers.kept(), MACHINE)
+        self.assertRegex(wishes.text_of([line(0.3, 1.0), line(0.49, 1.9)], []), r"n=6, nu 0.49.* 1.9 +2 +reached")
+        self.assertRegex(wishes.text_of([line(0.3, 1.0), line(0.49, 2.1)], []), r"n=6, nu 0.49.* 2.1 +2 +short")
 
     def test_a_power_law_has_its_exponent_as_slope(self):
         self.assertAlmostEqual(charts.slope([(x, 3 * x ** 1.5) for x in (10, 100, 700)]), 1.5, places=12)
