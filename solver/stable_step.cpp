@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 
 namespace msml::fe {
@@ -59,6 +60,35 @@ double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mas
     q = w / beta;
   }
   return value;
+}
+
+std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                         const Mask& fixed) {
+  const LowerTriangle lower = lower_triangle(*K.pattern, fixed);
+  const int n = lower.size();
+  if (n > most_dense) return std::nullopt;
+  std::vector<double> stiffness(lower.source.size()), damping(lower.source.size());
+  lower.gather(K, stiffness.data());
+  lower.gather(C, damping.data());
+  Eigen::MatrixXd motion = Eigen::MatrixXd::Zero(2 * n, 2 * n);  // of (x, x')
+  motion.topRightCorner(n, n).setIdentity();
+  const auto mass = [&](int k) {
+    return M.values[static_cast<std::size_t>(M.pattern->diagonal[static_cast<std::size_t>(lower.unknown_of[k] / 3)])];
+  };
+  for (int column = 0; column < n; ++column)
+    for (int p = lower.starts[column]; p < lower.starts[column + 1]; ++p) {
+      const int row = lower.rows[p];
+      motion(n + row, column) = -stiffness[p] / mass(row);
+      motion(n + column, row) = -stiffness[p] / mass(column);
+      motion(n + row, n + column) = -damping[p] / mass(row);
+      motion(n + column, n + row) = -damping[p] / mass(column);
+    }
+  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(motion, false).eigenvalues();
+  double limit = std::numeric_limits<double>::infinity();
+  const double free = 1e-8 * (n > 0 ? values.cwiseAbs().maxCoeff() : 0);
+  for (const std::complex<double>& l : values)
+    if (std::abs(l) > free) limit = std::min(limit, std::max(0.0, -2 * l.real() / std::norm(l)));
+  return limit;
 }
 
 double stable_step(Integrator integrator, double largest, double alpha, double beta) {

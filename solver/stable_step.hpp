@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The largest stable time step of the explicit methods.
 #pragma once
+#include <optional>
+
 #include "solver/linear/linear_system.hpp"
 #include "solver/model.hpp"
 
@@ -17,5 +19,12 @@ double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mas
 /// forward Euler: dt < c/w^2 = 2 z/w, or, overdamped, dt < (c - sqrt(c^2 - 4 w^2))/w^2. Without damping 2/w and 0.
 /// (Schur's criterion on the amplification matrix of one step.)
 double stable_step(Integrator integrator, double largest, double alpha, double beta);
+
+/// The largest time step of forward Euler for M x'' + C x' + K x = 0 on few free unknowns: |1 + dt l| <= 1 for every
+/// eigenvalue l of the motion, so dt <= -2 Re l / |l|^2. 0 if a vibration is not damped; infinite if nothing moves but
+/// freely. Nothing with more than `most_dense` free unknowns.
+std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                         const Mask& fixed);
+inline constexpr int most_dense = 150;
 
 }  // namespace msml::fe

@@ -33,9 +33,11 @@ struct Explicit {
   }
 
   /// Dampers are no multiple of M and K, but no motion is damped more than the one with the largest eigenvalue of C.
-  /// For forward Euler, which lives on damping, they do not count.
-  double limit_of(double largest, const Mask& fixed) const {
+  /// For forward Euler, which lives on damping, they count where the motion is small enough to be seen whole.
+  double limit_of(const BlockMatrix& K, double largest, const Mask& fixed) const {
     const Settings& s = run.model.settings;
+    if (run.equations.has_dampers() && s.integrator == Integrator::forward_euler && s.damping_mass == 0)
+      if (const auto limit = forward_euler_step(K, C, run.equations.mass(), fixed)) return *limit;
     if (!run.equations.has_dampers() || s.integrator == Integrator::forward_euler)
       return stable_step(s.integrator, largest, s.damping_mass, s.damping_stiffness);
     return stable_step(s.integrator, largest, s.damping_mass + largest_eigenvalue(C, run.equations.mass(), fixed), 0);
@@ -48,7 +50,7 @@ struct Explicit {
     BlockMatrix K(C.pattern);
     run.newton.stiffness(run.now.u, loads, K);
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
-    const double limit = limit_of(largest, fixed);
+    const double limit = limit_of(K, largest, fixed);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
     if (step.dt <= limit * (1 + 1e-6)) return true;
     refuse(step, limit, std::sqrt(largest));

@@ -155,6 +155,20 @@ TEST(Pendulum, ForwardEulerGrowsByItsKnownRate) {
   EXPECT_NEAR(radius(phase(solve(pendulum(Integrator::forward_euler, dt, 100), {}))), expected, 1e-10 * expected);
 }
 
+// Its limit c/k is that of one direction, the others being held.
+TEST(Pendulum, ForwardEulerKnowsTheLimitThatADamperGivesIt) {
+  const double c = 0.3;
+  Model model = pendulum(Integrator::forward_euler, 1, 1, c);
+  model.settings.allow_unstable = false;
+  model.steps[0].prescribed = {
+      {.name = "line", .nodes = {0}, .values = {Vec3::Zero()}, .components = {true, true, false}}};
+  const double limit = c / model.steps[0].springs[0].stiffness;
+  for (const double share : {0.98, 1.02}) {
+    model.steps[0].dt = share * limit;
+    EXPECT_EQ(solve(model, {}).stop, share < 1 ? Stop::converged : Stop::unstable_step) << share;
+  }
+}
+
 // With damping forward Euler is stable below 2 zeta/omega, and grows above.
 TEST(Pendulum, ForwardEulerIsStableBelowItsLimit) {
   const double zeta = 0.1, c = 2 * zeta * std::sqrt(stiffness * mass), limit = 2 * zeta / omega;
