@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preconditioned conjugate gradients (Hestenes and Stiefel 1952, doi 10.6028/jres.049.044).
+// Conjugate gradients with the preconditioners that need a matrix alone.
 #include <tbb/parallel_for.h>
 
 #include <Eigen/IterativeLinearSolvers>
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/linear/linear_system.hpp"
+#include "solver/linear/cg.hpp"
 
 namespace msml::fe {
 namespace {
@@ -39,7 +39,7 @@ class ConjugateGradient final : public LinearSystem {
 
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     Vector b = right;
-    mask(b);
+    zero_fixed(fixed_, b);
     x = Vector::Zero(b.size());
     const double target = tolerance * std::sqrt(dot(b, b));
     long limit = std::clamp<long>(10 * b.size(), 1000, 50000);
@@ -47,10 +47,13 @@ class ConjugateGradient final : public LinearSystem {
     double size = std::sqrt(dot(r, r));
     // The recurrence drifts from the true residual: measure it, and start again from it where needed.
     while (size > target) {
-      const LinearStatus status = iterate(r, target, limit, x);
+      long taken = 0;
+      const auto prepare = [this](const Vector& residual, double, Vector& z) { precondition(residual, z); };
+      const LinearStatus status = conjugate_gradients(*matrix_, fixed_, prepare, target, limit, space_, r, x, taken);
+      limit -= taken, iterations += taken;
       multiply(*matrix_, x, r);
       r = b - r;
-      mask(r);
+      zero_fixed(fixed_, r);
       const double before = size;
       size = std::sqrt(dot(r, r));
       if (status != LinearStatus::done) return size <= target ? LinearStatus::done : status;
@@ -67,34 +70,6 @@ class ConjugateGradient final : public LinearSystem {
   }
 
  private:
-  void mask(Vector& v) const {
-    for_nodes(v.size(), [&](Eigen::Index k) {
-      if (fixed_[static_cast<std::size_t>(k)]) v[k] = 0;
-    });
-  }
-
-  /// Solves A d = r from zero and adds d to x, until the recurrence says |residual| <= target.
-  LinearStatus iterate(Vector r, double target, long& limit, Vector& x) {
-    Vector z, q, p = Vector::Zero(r.size());
-    double rho_before = 1;
-    while (limit-- > 0) {
-      precondition(r, z);
-      const double rho = dot(r, z);
-      if (!(rho > 0)) return LinearStatus::not_positive_definite;
-      p = z + (rho / rho_before) * p;
-      rho_before = rho;
-      multiply(*matrix_, p, q);
-      mask(q);
-      const double curvature = dot(p, q);
-      if (!(curvature > 0)) return LinearStatus::not_positive_definite;
-      x += (rho / curvature) * p;
-      r -= (rho / curvature) * q;
-      ++iterations;
-      if (std::sqrt(dot(r, r)) <= target) return LinearStatus::done;
-    }
-    return LinearStatus::limit;
-  }
-
   void precondition(const Vector& r, Vector& z) const {
     if (kind_ == Preconditioner::none) {
       z = r;
@@ -148,6 +123,7 @@ class ConjugateGradient final : public LinearSystem {
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   LowerTriangle lower_;
+  CgSpace space_;
   std::vector<double> inverse_;  ///< 9 per node
   Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>> incomplete_;
 };

@@ -4,13 +4,14 @@
 #include <limits>
 #include <random>
 
+#include "solver/linear/cg.hpp"
 #include "solver/linear/multigrid/multigrid.hpp"
 #include "solver/linear/multigrid/node_rotations.hpp"
 
 namespace msml::fe {
 namespace {
 
-constexpr int limit_fresh = 400;  // iterations with grids of the matrix itself
+constexpr long limit_fresh = 400;  // iterations with grids of the matrix itself
 
 /// The grids are those of an earlier matrix for as long as they serve: set up anew where the iterations grow. Between
 /// two set-ups the cycle sees residuals turned back by the rotation of each node since the last one, so that the
@@ -33,18 +34,21 @@ class MultigridSolver final : public LinearSystem {
 
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     b_ = right;
-    mask(b_);
+    zero_fixed(fixed_, b_);
     x = Vector::Zero(b_.size());
     const double target = tolerance * std::sqrt(dot(b_, b_));
     double size = std::sqrt(dot(b_, b_)), before = std::numeric_limits<double>::infinity();
     r_ = b_;
     while (size > target) {
       const double decades = std::max(1.0, std::log10(size / target));
-      const int limit = fresh_ ? limit_fresh : static_cast<int>(2 * usual_ * decades) + 10;
-      int taken = 0;
-      const LinearStatus status = iterate(target, limit, x, taken);
-      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = taken / decades;
-      stale_ = !fresh_ && taken > 1.5 * usual_ * decades + 2;
+      const long limit = fresh_ ? limit_fresh : static_cast<long>(2 * usual_ * decades) + 10;
+      long taken = 0;
+      const LinearStatus status = conjugate_gradients(
+          *matrix_, fixed_, [this](const Vector& r, double length, Vector& z) { precondition(r, length, z); }, target,
+          limit, space_, r_, x, taken);
+      iterations += taken;
+      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = static_cast<double>(taken) / decades;
+      stale_ = !fresh_ && static_cast<double>(taken) > 1.5 * usual_ * decades + 2;
       if (status == LinearStatus::limit && fresh_) return status;
       if (status == LinearStatus::not_positive_definite && fresh_) return status;
       if (status != LinearStatus::done) {
@@ -54,7 +58,7 @@ class MultigridSolver final : public LinearSystem {
       // The recurrence drifts from the true residual: measure it, and go on from there where needed.
       multiply(*matrix_, x, r_);
       r_ = b_ - r_;
-      mask(r_);
+      zero_fixed(fixed_, r_);
       size = std::sqrt(dot(r_, r_));
       if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
       if (status == LinearStatus::done && size > target && size > 0.5 * before) return LinearStatus::limit;
@@ -94,21 +98,15 @@ class MultigridSolver final : public LinearSystem {
     node_rotations(*matrix_->pattern, reference_, Vector(geometry_.positions + displacement_), fixed_, rotations_);
   }
 
-  void mask(Vector& v) const {
-    for_rows(static_cast<int>(v.size()), 8192, [&](int k) {
-      if (fixed_[static_cast<std::size_t>(k)]) v[k] = 0;
-    });
-  }
-
   /// z = R V R^T r with the rotations R of the nodes, in single precision on numbers of order one.
-  void precondition(double size) {
-    const auto count = static_cast<std::size_t>(r_.size());
+  void precondition(const Vector& r, double size, Vector& z) {
+    const auto count = static_cast<std::size_t>(r.size());
     single_r_.resize(count + 8, 0.0f);
     single_z_.resize(count + 8, 0.0f);
     const double scale = 1 / size;
-    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, true, r_.data(), scale, single_r_.data()); });
+    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, true, r.data(), scale, single_r_.data()); });
     grids_.cycle(single_r_, single_z_);
-    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, false, single_z_.data(), size, z_.data()); });
+    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, false, single_z_.data(), size, z.data()); });
   }
 
   template <class From, class To>
@@ -127,31 +125,6 @@ class MultigridSolver final : public LinearSystem {
     }
   }
 
-  /// Adds to x until the recurrence of the residual r_ says that it is below target.
-  LinearStatus iterate(double target, int limit, Vector& x, int& taken) {
-    z_.resize(r_.size());
-    p_ = Vector::Zero(r_.size());
-    double rho_before = 1, size = std::sqrt(dot(r_, r_));
-    while (taken < limit) {
-      precondition(size);
-      const double rho = dot(r_, z_);
-      if (!(rho > 0)) return LinearStatus::not_positive_definite;
-      p_ = z_ + (rho / rho_before) * p_;
-      rho_before = rho;
-      multiply(*matrix_, p_, q_);
-      mask(q_);
-      const double curvature = dot(p_, q_);
-      if (!(curvature > 0)) return LinearStatus::not_positive_definite;
-      const double alpha = rho / curvature;
-      x += alpha * p_;
-      r_ -= alpha * q_;
-      ++iterations, ++taken;
-      size = std::sqrt(dot(r_, r_));
-      if (size <= target) return LinearStatus::done;
-    }
-    return LinearStatus::limit;
-  }
-
   NodeGeometry geometry_;
   Multigrid grids_;
   const BlockMatrix* matrix_ = nullptr;
@@ -160,7 +133,8 @@ class MultigridSolver final : public LinearSystem {
   double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve after the last set-up
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
-  Vector b_, r_, z_, p_, q_;
+  Vector b_, r_;
+  CgSpace space_;
   std::vector<float> single_r_, single_z_;
 };
 

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The loop of preconditioned conjugate gradients.
+#pragma once
+#include <functional>
+
+#include "solver/linear/linear_system.hpp"
+
+namespace msml::fe {
+
+/// z = B r with B symmetric and positive definite; `size` is |r|. Both are zero at fixed unknowns.
+using Preconditioning = std::function<void(const Vector& r, double size, Vector& z)>;
+
+/// Vectors that a solution needs, kept from one to the next.
+struct CgSpace {
+  Vector z, p, q;
+};
+
+/// v = 0 at fixed unknowns.
+void zero_fixed(const Mask& fixed, Vector& v);
+
+/// Adds to x until the recurrence of the residual r = b - A x says that it is below target, at most `limit` times
+/// (Hestenes and Stiefel 1952, doi 10.6028/jres.049.044). `taken` counts. not_positive_definite where A or B shows it.
+LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
+                                 long limit, CgSpace& space, Vector& r, Vector& x, long& taken);
+
+}  // namespace msml::fe
