@@ -17,16 +17,6 @@
 namespace msml::operators {
 namespace {
 
-void check(const Field& field, std::size_t count, const char* what) {
-  if (field.components < 1 || field.values.size() != count * static_cast<std::size_t>(field.components))
-    throw Error(fmt::format("{} field '{}' has {} values for {} {}s of {} components", what, field.name,
-                            field.values.size(), count, what, field.components));
-  const auto bad = std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
-  if (bad != field.values.end())
-    throw Error(fmt::format("{} field '{}' is {} at {} {}; only finite numbers are allowed", what, field.name, *bad,
-                            what, (bad - field.values.begin()) / field.components));
-}
-
 Field field_of(vtkDataArray& array, int index) {
   Field field;
   field.name = array.GetName() && *array.GetName() ? array.GetName() : fmt::format("array{}", index);
@@ -45,9 +35,19 @@ bool holds_region_ids(const Field& field) {
 
 }  // namespace
 
+void check_field(const Field& field, std::size_t count, const char* what) {
+  if (field.components < 1 || field.values.size() != count * static_cast<std::size_t>(field.components))
+    throw Error(fmt::format("{} field '{}' has {} values for {} {}s of {} components", what, field.name,
+                            field.values.size(), count, what, field.components));
+  const auto bad = std::find_if(field.values.begin(), field.values.end(), [](double v) { return !std::isfinite(v); });
+  if (bad != field.values.end())
+    throw Error(fmt::format("{} field '{}' is {} at {} {}; only finite numbers are allowed", what, field.name, *bad,
+                            what, (bad - field.values.begin()) / field.components));
+}
+
 void add_fields(const std::vector<Field>& fields, std::size_t count, const char* what, vtkDataSetAttributes& out) {
   for (const Field& field : fields) {
-    check(field, count, what);
+    check_field(field, count, what);
     const vtkNew<vtkDoubleArray> array;
     array->SetName(field.name.c_str());
     array->SetNumberOfComponents(field.components);
@@ -63,7 +63,7 @@ std::vector<Field> fields_of(vtkDataSetAttributes& in, std::size_t count, const 
     vtkDataArray* const array = in.GetArray(i);
     if (array == nullptr) continue;
     fields.push_back(field_of(*array, i));
-    check(fields.back(), count, what);
+    check_field(fields.back(), count, what);
   }
   return fields;
 }

@@ -9,8 +9,11 @@ class vtkDataSetAttributes;
 
 namespace msml::operators {
 
-/// Adds one array of doubles per field. `what` is "point" or "cell", for the message of the Error that is thrown where
-/// a value is NaN or infinite or the number of values does not fit `count`.
+/// Throws Error where a value is NaN or infinite or the number of values does not fit `count`. `what` is "point" or
+/// "cell", for the message.
+void check_field(const Field& field, std::size_t count, const char* what);
+
+/// Adds one array of doubles per field. Throws Error as check_field does.
 void add_fields(const std::vector<Field>& fields, std::size_t count, const char* what, vtkDataSetAttributes& out);
 
 /// All numeric arrays as fields; texts are left out. Throws Error as above.

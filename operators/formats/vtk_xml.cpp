@@ -10,13 +10,13 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
 #include <fstream>
 #include <string_view>
 
 #include "operators/formats/formats.hpp"
+#include "operators/formats/vtu_writer.hpp"
 #include "operators/vtk_convert.hpp"
 #include "operators/vtk_guard.hpp"
 
@@ -89,9 +89,7 @@ Format format(std::string extension, std::string doc, std::vector<Type> reads, s
 Format vtk_xml_grid() {
   return format(".vtu", "VTK XML unstructured grid; raw binary, doubles, region ids as cell array 'region'.",
                 {Type::mesh, Type::surface}, {Type::mesh, Type::surface}, read_grid,
-                [](const Value& value, const std::filesystem::path& path) {
-                  write<vtkXMLUnstructuredGridWriter>(to_vtk(*mesh_in(value)), path);
-                });
+                [](const Value& value, const std::filesystem::path& path) { write_vtu(*mesh_in(value), path); });
 }
 
 Format vtk_xml_poly() {

@@ -56,7 +56,7 @@ def all_rows(quick, folder):
     runs = 3 if quick else 5
     return beam_rows(quick) + [Row("scene", runs=runs),
                                Row("write", "vtu", runs=runs, command=["write_bench", folder, "8" if quick else "24"]),
-                               Row("mesh", "ball", runs=runs, command=["mesh_bench", "0.2" if quick else "0.1"])]
+                               Row("mesh", "ball", runs=runs, command=["mesh_bench", "0.1" if quick else "0.05"])]
 
 
 SCENE = """<msml:msml xmlns:msml="http://sfb125.de/msml">

@@ -77,6 +77,36 @@ TEST_P(FieldFile, KeepsFieldsToTheLastBit) {
 }
 INSTANTIATE_TEST_SUITE_P(All, FieldFile, testing::Values(".vtk", ".vtu"));
 
+TEST_P(FieldFile, KeepsNamesThatXmlWouldRead) {
+  const test::Folder folder("msml_names");
+  Mesh mesh = every_kind();
+  mesh.point_fields[0].name = GetParam() == ".vtu" ? "a<b & \"c\">d" : "a b";  // legacy files have words of their own
+  EXPECT_EQ(through(mesh, folder / ("m" + GetParam()))->point_fields[0].name, mesh.point_fields[0].name);
+}
+
+TEST(VtuFile, OfTwoFieldsWithOneNameTheLaterIsWrittenAndRegionsComeLast) {
+  const test::Folder folder("msml_twins");
+  Mesh mesh = every_kind();
+  const std::size_t cells = mesh.kinds.size();
+  const auto field = [&](const std::string& name, double value) {
+    return Field{.name = name, .values = std::vector<double>(cells, value)};
+  };
+  mesh.cell_fields = {field("x", 1), field("region", 7), field("x", 2)};
+  const MeshPtr back = through(mesh, folder / "m.vtu");
+  EXPECT_EQ(back->regions, mesh.regions);
+  ASSERT_EQ(back->cell_fields.size(), 1U);
+  EXPECT_EQ(back->cell_fields[0].values, std::vector<double>(cells, 2));
+}
+
+TEST(VtuFile, MayHoldPointsAlone) {
+  const test::Folder folder("msml_points");
+  Mesh mesh;
+  mesh.points = every_kind().points;
+  const MeshPtr back = through(mesh, folder / "m.vtu");
+  EXPECT_EQ(back->points, mesh.points);
+  EXPECT_EQ(back->cell_count(), 0);
+}
+
 TEST(MeditFile, KeepsRegionsAndGroupsCellsByKind) {
   const test::Folder folder("msml_medit");
   Mesh mesh;
