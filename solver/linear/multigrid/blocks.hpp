@@ -56,22 +56,31 @@ using Single8 = float __attribute__((vector_size(32)));
 template <int R>
 using Column = std::conditional_t<(R <= 4), Single4, Single8>;
 
+/// sum_j += column j of a block times v_j.
+template <int R, int C>
+void add_product(const float* block, const float* v, Column<R> (&sum)[C]) {
+  for (int j = 0; j < C; ++j) {
+    Column<R> column;
+    std::memcpy(&column, block + R * j, sizeof column);
+    sum[j] += column * v[j];
+  }
+}
+
 /// Row r of A x: R numbers and a few more.
 template <int R, int C>
 Column<R> row_product(const Blocks<float, R, C>& A, int r, const float* x) {
-  Column<R> sum[C] = {};
+  Column<R> even[C] = {}, odd[C] = {};  // two sums, so that one need not wait for the other
+  const int* columns = A.sparsity.columns.data();
+  int p = A.sparsity.offsets[static_cast<std::size_t>(r)];
   const int end = A.sparsity.offsets[static_cast<std::size_t>(r) + 1];
-  for (int p = A.sparsity.offsets[static_cast<std::size_t>(r)]; p < end; ++p) {
-    const float* a = A.block(p);
-    const float* v = x + C * A.sparsity.columns[static_cast<std::size_t>(p)];
-    for (int j = 0; j < C; ++j) {
-      Column<R> column;
-      std::memcpy(&column, a + R * j, sizeof column);
-      sum[j] += column * v[j];
-    }
+  for (; p + 1 < end; p += 2) {
+    add_product<R>(A.block(p), x + C * columns[p], even);
+    add_product<R>(A.block(p + 1), x + C * columns[p + 1], odd);
   }
-  for (int j = 1; j < C; ++j) sum[0] += sum[j];
-  return sum[0];
+  if (p < end) add_product<R>(A.block(p), x + C * columns[p], even);
+  Column<R> sum = even[0] + odd[0];
+  for (int j = 1; j < C; ++j) sum += even[j] + odd[j];
+  return sum;
 }
 
 /// D v for one R x R block.
