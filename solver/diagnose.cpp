@@ -2,6 +2,8 @@
 // Says in plain words why a run stopped and what to try.
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "solver/integrators/stepper.hpp"
 
 namespace msml::fe {
@@ -37,7 +39,8 @@ std::string advice(const Run& run, Stop stop) {
 std::string residual_text(const IncrementResult& result) {
   if (result.residuals.empty()) return "none";
   std::string text;
-  for (const double r : result.residuals) text += fmt::format("{}{:.2e}", text.empty() ? "" : " ", r);
+  for (const double r : result.residuals)
+    text += (text.empty() ? "" : " ") + (std::isfinite(r) ? fmt::format("{:.2e}", r) : "beyond numbers");
   return text + fmt::format(" (forces are of the size {:.2e})", result.scale);
 }
 

@@ -339,7 +339,7 @@ IncrementResult Newton::run(const Increment& increment) {
   const bool moved = jump.squaredNorm() > 0;
   IncrementResult result = begin(increment, jump);
   Vector& u = result.u;
-  if (!std::isfinite(result.residuals.back())) return result.stop = Stop::diverged, result;
+  if (!std::isfinite(result.residuals.back())) return result.stop = not_finite(), result;
   if (!moved && limit > 1 && accepted(increment, result)) return result.stop = verdict(increment, result), result;
   Vector residual = free_residual(increment);
   for (int iteration = 0; iteration < limit; ++iteration) {
@@ -366,7 +366,8 @@ IncrementResult Newton::run(const Increment& increment) {
     residual = free_residual(increment);
     note_residual(increment, residual, result);
     if (accepted(increment, result)) return result.stop = verdict(increment, result), result;
-    if (!residual.allFinite() || exploded(result)) return result.stop = Stop::diverged, result;
+    if (!residual.allFinite()) return result.stop = not_finite(), result;
+    if (exploded(result)) return result.stop = Stop::diverged, result;
   }
   result.stop = Stop::newton_limit;
   return result;

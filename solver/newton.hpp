@@ -97,6 +97,7 @@ class Newton {
   bool indefinite(LinearStatus status) const;
   bool accepted(const Increment& increment, const IncrementResult& result) const;
   bool exploded(const IncrementResult& result) const;
+  Stop not_finite() const;  ///< why the state evaluated last has no finite forces
   double round_off(const Vector& u) const;
   void note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const;
   Stop verdict(const Increment& increment, IncrementResult& result);

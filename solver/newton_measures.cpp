@@ -67,15 +67,19 @@ bool Newton::accepted(const Increment& increment, const IncrementResult& result)
 
 Stop Newton::state_verdict() const {
   const Assembled& found = forces_.found;
-  if (!found.finite) return Stop::diverged;
-  if (equations_.small_strain() || model_.settings.allow_inverted || found.smallest_J_element < 0)
-    return Stop::converged;
+  const Stop sound = found.finite ? Stop::converged : Stop::diverged;
+  if (equations_.small_strain() || model_.settings.allow_inverted || found.smallest_J_element < 0) return sound;
   if (!survives_[static_cast<std::size_t>(found.smallest_J_element)])
-    return found.smallest_J <= 0 ? Stop::inverted_element : Stop::converged;
+    return found.smallest_J <= 0 ? Stop::inverted_element : sound;
+  if (!found.finite) return Stop::diverged;
   // Motion may pass through inversion; an equilibrium there is a trap. F = 0 comes with det F of either sign.
   constexpr double flat = 1e-9;
   const bool trapped = !is_dynamic(model_.settings.integrator) && found.smallest_J <= flat;
   return trapped ? Stop::collapsed : Stop::converged;
+}
+
+Stop Newton::not_finite() const {
+  return state_verdict() == Stop::inverted_element ? Stop::inverted_element : Stop::diverged;
 }
 
 void Newton::report(Outcome& outcome) const {

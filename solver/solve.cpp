@@ -8,6 +8,7 @@
 #include <chrono>
 
 #include "solver/check_answer.hpp"
+#include "solver/energy_gain.hpp"
 #include "solver/integrators/stepper.hpp"
 #include "solver/other_rest.hpp"
 
@@ -46,8 +47,8 @@ Outcome run_model(const Model& model, const Observer& observer) {
   newton.report(outcome);
   outcome.state = run.state();
   outcome.check = check_answer(run);
-  if (std::string warning = warning_of_other_rest(run, outcome.check); !warning.empty())
-    outcome.warnings.push_back(std::move(warning));
+  for (const std::string& warning : {warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})
+    if (!warning.empty()) outcome.warnings.push_back(warning);
   return outcome;
 }
 

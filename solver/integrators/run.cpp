@@ -85,6 +85,7 @@ void Run::mark() {
   pull_before = forces.external + now.reaction;
   damping_before = forces.damping;
   measure_energies();
+  if (!energy_at_start) energy_at_start = now.energies.elastic + now.energies.kinetic;
 }
 
 void Run::account(const Vector& u_before) {

@@ -31,6 +31,7 @@ struct Run {
   double piece = 0;                              ///< adaptive_step: length of the next piece, in time; 0: not known yet
   FreeMotions free = {};                         ///< rigid motions that the supports of the present step leave
   std::optional<Forces> between = {};            ///< balanced forces, where these are not those at the present time
+  std::optional<double> energy_at_start = {};    ///< elastic and kinetic, at the first mark
 
   /// Takes up what the supports of a static step leave free, if anything.
   void hold(const Step& step, const Mask& fixed);
