@@ -35,13 +35,14 @@ Corners::Corners(const NodeGeometry& geometry, const std::vector<char>& fixed) :
   for (int n = 0; n < nodes; ++n) for_parents(n, [&](int c) { children_[at(next[at(c)]++)] = n; });
 }
 
-void Corners::restrict_matrix(const Blocks<double, 3, 3>& A, Blocks<double, 3, 3>& coarse) const {
+void Corners::restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse) const {
+  const Pattern& pattern = *A.matrix.pattern;
   const auto for_columns = [&](int c, const auto& body) {
     for (int k = child_offsets_[at(c)]; k < child_offsets_[at(c) + 1]; ++k) {
       const int n = children_[at(k)];
       const double share = parents_[at(n)].first == parents_[at(n)].second ? 1 : 0.5;
-      for (int p = A.sparsity.offsets[at(n)]; p < A.sparsity.offsets[at(n + 1)]; ++p) {
-        const auto [a, b] = parents_[at(A.sparsity.columns[at(p)])];
+      for (int p = pattern.offsets[at(n)]; p < pattern.offsets[at(n + 1)]; ++p) {
+        const auto [a, b] = parents_[at(pattern.columns[at(p)])];
         body(a, p, n, a == b ? share : 0.5 * share);
         if (a != b) body(b, p, n, 0.5 * share);
       }
@@ -69,8 +70,9 @@ void Corners::restrict_matrix(const Blocks<double, 3, 3>& A, Blocks<double, 3, 3
     for (int p = coarse.sparsity.offsets[at(c)]; p < coarse.sparsity.offsets[at(c + 1)]; ++p)
       place[at(coarse.sparsity.columns[at(p)])] = p;
     for_columns(c, [&](int other, int p, int n, double share) {
-      const int m = A.sparsity.columns[at(p)];
-      const double* a = A.block(p);
+      const int m = pattern.columns[at(p)];
+      double a[9];
+      A.copy(p, n, m, a);
       double* out = coarse.block(place[at(other)]);
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From quadratic elements to linear ones on the same mesh.
 #pragma once
-#include "solver/linear/multigrid/blocks.hpp"
+#include "solver/linear/multigrid/free_blocks.hpp"
 #include "solver/linear/node_geometry.hpp"
 
 namespace msml::fe {
@@ -15,7 +15,7 @@ class Corners {
   const std::vector<int>& node_of() const { return node_of_; }      ///< the node that a corner is
   const std::vector<char>& fixed() const { return fixed_coarse_; }  ///< 3 per corner
   /// coarse = P^T A P, with a unit diagonal at fixed unknowns. The sparsity is made once.
-  void restrict_matrix(const Blocks<double, 3, 3>& A, Blocks<double, 3, 3>& coarse) const;
+  void restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse) const;
   void restrict_vector(const std::vector<float>& fine, std::vector<float>& coarse) const;  ///< P^T
   void add_prolonged(const std::vector<float>& coarse, std::vector<float>& fine) const;    ///< fine += P coarse
 

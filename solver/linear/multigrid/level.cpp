@@ -32,18 +32,14 @@ V get(const float* from) {
 }  // namespace
 
 template <int B>
-bool Level<B>::set(const Blocks<double, B, B>& A) {
-  matrix_ = rounded(A);
-  inverse_.resize(B * B * at(A.sparsity.rows()));
+bool Level<B>::invert(const std::vector<double>& diagonals) {
+  inverse_.resize(diagonals.size());
   std::atomic<bool> good = true;
-  for_rows(A.sparsity.rows(), 1024, [&](int r) {
-    for (int p = A.sparsity.offsets[at(r)]; p < A.sparsity.offsets[at(r + 1)]; ++p) {
-      if (A.sparsity.columns[at(p)] != r) continue;
-      using Block = Eigen::Matrix<double, B, B>;
-      const Eigen::LLT<Block> factor{Eigen::Map<const Block>(A.block(p))};
-      if (factor.info() != Eigen::Success) good = false;
-      Eigen::Map<Block>(inverse_.data() + B * B * at(r)) = factor.solve(Block::Identity());
-    }
+  for_rows(nodes(), 1024, [&](int r) {
+    using Block = Eigen::Matrix<double, B, B>;
+    const Eigen::LLT<Block> factor{Eigen::Map<const Block>(diagonals.data() + B * B * at(r))};
+    if (factor.info() != Eigen::Success) good = false;
+    Eigen::Map<Block>(inverse_.data() + B * B * at(r)) = factor.solve(Block::Identity());
   });
   if (!good) return false;
   inverse_single_.assign(inverse_.begin(), inverse_.end());

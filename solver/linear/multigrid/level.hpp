@@ -13,8 +13,25 @@ class Level {
  public:
   using Numbers = std::vector<float>;
 
-  /// Takes the matrix; false if a diagonal block is not positive definite.
-  bool set(const Blocks<double, B, B>& A);
+  /// Takes the matrix; false if a diagonal block is not positive definite. copy(p, r, c, out) gives the block at
+  /// position p, in row r and column c, column by column.
+  template <class Copy>
+  bool set(const Sparsity& sparsity, const Copy& copy) {
+    matrix_.sparsity = sparsity;
+    matrix_.allocate();
+    std::vector<double> diagonals(B * B * static_cast<std::size_t>(nodes()));
+    for_rows(nodes(), 512, [&](int r) {
+      double block[B * B];
+      for (int p = sparsity.offsets[static_cast<std::size_t>(r)]; p < sparsity.offsets[static_cast<std::size_t>(r) + 1];
+           ++p) {
+        const int c = sparsity.columns[static_cast<std::size_t>(p)];
+        copy(p, r, c, block);
+        std::copy(block, block + B * B, matrix_.block(p));
+        if (c == r) std::copy(block, block + B * B, diagonals.data() + B * B * static_cast<std::size_t>(r));
+      }
+    });
+    return invert(diagonals);
+  }
   int nodes() const { return matrix_.sparsity.rows(); }
   Numbers vector() const { return Numbers(B * static_cast<std::size_t>(nodes()) + 8, 0.0f); }
   /// x = S b: `degree` steps from zero.
@@ -30,6 +47,7 @@ class Level {
   int degree = 2;  ///< of the smoother
 
  private:
+  bool invert(const std::vector<double>& diagonals);
   void estimate_radius();
   void step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next);
 

@@ -31,26 +31,20 @@ void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, 
 
 }  // namespace
 
-void Multigrid::copy_free(const BlockMatrix& A, Blocks<double, 3, 3>& free) const {
-  const Pattern& pattern = *A.pattern;
-  if (free.sparsity.rows() != pattern.nodes()) {
-    free.sparsity.width = pattern.nodes();
-    free.sparsity.offsets = pattern.offsets;
-    free.sparsity.columns = pattern.columns;
+/// The matrix of the finest grid in single precision; in double too where groups are made from it.
+bool Multigrid::set_fine(const FreeBlocks& A) {
+  const Sparsity sparsity = A.sparsity();
+  const std::size_t size = 3 * at(sparsity.rows()) + 8;
+  for (auto* v : {&fine_.b, &fine_.x, &fine_.r}) v->assign(size, 0.0f);
+  if (!corners_) {
+    fine_.matrix.sparsity = sparsity;
+    fine_.matrix.values.resize(9 * sparsity.columns.size() + 8);
+    for_rows(sparsity.rows(), 512, [&](int r) {
+      for (int p = sparsity.offsets[at(r)]; p < sparsity.offsets[at(r + 1)]; ++p)
+        A.copy(p, r, sparsity.columns[at(p)], fine_.matrix.block(p));
+    });
   }
-  free.values.resize(9 * pattern.columns.size() + 8);
-  for_rows(pattern.nodes(), 512, [&](int r) {
-    for (int p = pattern.offsets[at(r)]; p < pattern.offsets[at(r + 1)]; ++p) {
-      const int c = pattern.columns[at(p)];
-      const double* a = A.values.data() + 9 * at(p);
-      double* out = free.block(p);
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          const bool gone = fixed_[at(3 * r + i)] || fixed_[at(3 * c + j)];
-          out[3 * j + i] = !gone ? a[3 * i + j] : (r == c && i == j ? 1.0 : 0.0);
-        }
-    }
-  });
+  return fine_.level.set(sparsity, [&](int p, int r, int c, double* out) { A.copy(p, r, c, out); });
 }
 
 void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<char>& fixed, Modes& modes) const {
@@ -73,8 +67,9 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
-  grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest && &grid != static_cast<void*>(&fine_);
-  const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
+  grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
+  const auto copy = [&](int p, int, int, double* out) { std::copy_n(grid.matrix.block(p), B * B, out); };
+  const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix.sparsity, copy);
   const std::size_t size = B * at(grid.matrix.sparsity.rows()) + 8;
   for (auto* v : {&grid.b, &grid.x, &grid.r}) v->assign(size, 0.0f);
   return good;
@@ -99,12 +94,11 @@ bool Multigrid::coarsen(Grid<B>& grid, const std::vector<char>& skip, std::optio
   return true;
 }
 
-bool Multigrid::set_matrices() {
-  if (!settle(fine_)) return false;
+bool Multigrid::set_matrices(const FreeBlocks& A) {
+  if (!set_fine(A)) return false;
   Grid<3>* last = &fine_;
   if (corners_) {
-    corners_->restrict_matrix(fine_.matrix, linear_.matrix);
-    fine_.matrix.values = {};
+    corners_->restrict_matrix(A, linear_.matrix);
     if (!settle(linear_)) return false;
     last = &linear_;
   }
@@ -140,8 +134,7 @@ LinearStatus Multigrid::set(const BlockMatrix& A, const Mask& fixed) {
     steps_.clear();
     made_ = true;
   }
-  copy_free(A, fine_.matrix);
-  return set_matrices() ? LinearStatus::done : LinearStatus::not_positive_definite;
+  return set_matrices({A, fixed_}) ? LinearStatus::done : LinearStatus::not_positive_definite;
 }
 
 /// x = V b on a grid, with everything below it.

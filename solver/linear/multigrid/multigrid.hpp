@@ -42,8 +42,8 @@ class Multigrid {
     std::vector<float> b, x, r;
     bool solved = false;  ///< by coarsest_, instead of smoothing
   };
-  void copy_free(const BlockMatrix& A, Blocks<double, 3, 3>& free) const;
-  bool set_matrices();
+  bool set_matrices(const FreeBlocks& A);
+  bool set_fine(const FreeBlocks& A);
   template <int B>
   bool coarsen(Grid<B>& grid, const std::vector<char>& skip, std::optional<Step<B>>& step, Modes& modes);
   template <int B>

@@ -11,7 +11,8 @@
 namespace msml::fe {
 namespace {
 
-constexpr long limit_fresh = 400;  // iterations with grids of the matrix itself
+constexpr long limit_fresh = 400;      // iterations with grids of the matrix itself
+constexpr double worth_a_set_up = 10;  // iterations that cost as much as setting up
 
 /// The grids are those of an earlier matrix for as long as they serve: set up anew where the iterations grow. Between
 /// two set-ups the cycle sees residuals turned back by the rotation of each node since the last one, so that the
@@ -48,7 +49,7 @@ class MultigridSolver final : public LinearSystem {
           limit, space_, r_, x, taken);
       iterations += taken;
       if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = static_cast<double>(taken) / decades;
-      stale_ = !fresh_ && static_cast<double>(taken) > 1.5 * usual_ * decades + 2;
+      stale_ = !fresh_ && static_cast<double>(taken) > usual_ * decades + worth_a_set_up;
       if (status == LinearStatus::limit && fresh_) return status;
       if (status == LinearStatus::not_positive_definite && fresh_) return status;
       if (status != LinearStatus::done) {
