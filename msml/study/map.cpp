@@ -17,8 +17,9 @@ namespace {
 struct Look {
   const char *name, *colour;
 };
-constexpr std::array<Look, 4> looks{{{"accurate", "#009E73"},
+constexpr std::array<Look, 5> looks{{{"accurate", "#009E73"},
                                      {"inaccurate", "#F0E442"},
+                                     {"inaccurate, warned", "#0072B2"},
                                      {"stopped, said so", "#56B4E9"},
                                      {"wrong, unsaid", "#D55E00"}}};
 
@@ -70,6 +71,7 @@ Fate fate(const Table& table, std::size_t row, const Chart& chart) {
   if (!table.done(row)) return Fate::said_so;
   const double error = std::abs(table.number(row, chart.color));
   if (error <= chart.accurate) return Fate::accurate;
+  if (!table.text(row, "warnings").empty()) return Fate::warned;
   return error <= chart.wrong ? Fate::inaccurate : Fate::wrong;
 }
 

@@ -6,10 +6,11 @@
 namespace msml {
 
 /// What became of a run, in the order of the legend.
-enum class Fate : std::uint8_t { accurate, inaccurate, said_so, wrong };
+enum class Fate : std::uint8_t { accurate, inaccurate, warned, said_so, wrong };
 
-/// Accurate or inaccurate by the error and the chart's bound; a run that stopped with a reason said so; one that ends
-/// well with an error above the chart's `wrong`, or with none, does not.
+/// Accurate or inaccurate by the error and the chart's bound, the latter with or without a warning; a run that stopped
+/// with a reason said so; one that ends well and without a warning, with an error above the chart's `wrong` or with
+/// none, does not.
 Fate fate(const Table& table, std::size_t row, const Chart& chart);
 
 /// A gnuplot script: a cell for each run, coloured by its fate, with the lines of theory over them. Throws Error if x

@@ -58,6 +58,13 @@ const char* status_of(const Error& error) {
   }
 }
 
+std::string warnings_of(const RunResult& result) {
+  std::string text;
+  for (const NodeReport& node : result.nodes)
+    for (const std::string& warning : node.warnings) text += (text.empty() ? "" : "; ") + warning;
+  return text;
+}
+
 /// The processor's first threads, so that timings are not disturbed by moves between processors.
 void pin(int threads) {
   cpu_set_t allowed, some;
@@ -82,7 +89,7 @@ class Runner {
       : study_(study), registry_(registry), options_(options), results_(results) {}
 
   std::vector<std::string> row(const StudyRun& run, std::size_t number) {
-    Row row{.status = "refused", .reason = run.reason, .unknowns = {}, .samples = {}};
+    Row row{.status = "refused", .reason = run.reason, .warnings = {}, .unknowns = {}, .samples = {}};
     row.samples.resize(study_.measures.size());
     if (run.scene) {
       try {
@@ -98,7 +105,7 @@ class Runner {
 
  private:
   struct Row {
-    std::string status, reason;
+    std::string status, reason, warnings;
     std::optional<double> unknowns;
     std::vector<std::vector<double>> samples;  ///< per measure, one per pass
   };
@@ -116,6 +123,7 @@ class Runner {
       const RunResult result = pass(*run.scene, shelf, folder, study_.limit);
       const Finished finished{*run.scene, result, shelf};
       row.unknowns = unknowns(finished);
+      row.warnings = warnings_of(result);
       if (!result.errors.empty()) throw result.errors.front();
       std::optional<Finished> reference;
       if (truth) reference.emplace(Finished{*run.reference, *truth, *truth_shelf});
@@ -151,6 +159,7 @@ class Runner {
       cells.push_back(digits(*std::min_element(samples.begin(), samples.end())));
       cells.push_back(digits(*std::max_element(samples.begin(), samples.end())));
     }
+    cells.push_back(row.warnings);
     cells.push_back(row.reason);
     cells.push_back(run.key);
     return cells;
@@ -200,7 +209,7 @@ std::vector<std::string> study_columns(const Study& study) {
     if (each.quantity == Quantity::time) columns.insert(columns.end(), {each.id + "_low", each.id + "_high"});
     if (each.extrapolated) columns.push_back(each.id + "_value");
   }
-  columns.insert(columns.end(), {"reason", "key"});
+  columns.insert(columns.end(), {"warnings", "reason", "key"});
   return columns;
 }
 

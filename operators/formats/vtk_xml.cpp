@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK's XML files: appended raw binary, not compressed, so that they are read and written at the speed of the disk.
+#include <fmt/format.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPolyData.h>
@@ -13,6 +14,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <set>
+#include <string>
 #include <string_view>
 
 #include "operators/formats/formats.hpp"
@@ -35,9 +38,33 @@ void require_end(const std::filesystem::path& path) {
   if (text.find(end) == std::string::npos) throw Error("is cut off or no VTK file: </VTKFile> is not at its end");
 }
 
+/// The value of the attribute Name, in quotes of either kind; empty if there is none.
+std::string name_in(const std::string& tag) {
+  const std::size_t at = tag.find(" Name=");
+  if (at == std::string::npos || at + 7 >= tag.size()) return {};
+  return tag.substr(at + 7, tag.find(tag[at + 6], at + 7) - at - 7);
+}
+
+/// VTK's readers crash where two arrays of the points, or of the cells, have one name.
+void require_distinct_names(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::set<std::string> names;
+  for (std::string tag; std::getline(in, tag, '<') && !tag.starts_with("AppendedData");) {
+    if (tag.starts_with("/DataArray") || tag.starts_with("/Array") || tag.starts_with("InformationKey")) continue;
+    if (!tag.starts_with("DataArray") && !tag.starts_with("Array")) {
+      names.clear();  // another group begins or ends
+      continue;
+    }
+    const std::string name = name_in(tag.substr(0, tag.find('>')));
+    if (!name.empty() && !names.insert(name).second)
+      throw Error(fmt::format("holds two arrays named '{}', of which no reader can tell the right one", name));
+  }
+}
+
 template <class Reader>
 vtkSmartPointer<Reader> opened(const std::filesystem::path& path) {
   require_end(path);
+  require_distinct_names(path);
   auto reader = vtkSmartPointer<Reader>::New();
   if (reader->CanReadFile(path.c_str()) == 0) throw Error("is not a VTK file of the kind that its name says");
   reader->SetFileName(path.c_str());

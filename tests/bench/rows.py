@@ -25,7 +25,7 @@ class Row:
     command: list = field(default_factory=list)
 
     def key(self):
-        return f"{self.work} {self.kind} n={self.n} nu={self.nu:g} {self.solver}"
+        return f"{self.work} {self.kind} n={self.n} nu={self.nu:g} {self.solver}" if self.n else self.work
 
 
 def beam_rows(quick):
@@ -104,8 +104,9 @@ def run_beam(binaries, row):
 
 
 def run_scene(binaries, row):
-    """Wall time of a whole run of a scene of six tetrahedra, results written."""
-    with tempfile.TemporaryDirectory() as scratch:
+    """Wall time of a whole run of a scene of six tetrahedra, results written to memory: disks may take their time."""
+    memory = "/dev/shm"
+    with tempfile.TemporaryDirectory(dir=memory if os.access(memory, os.W_OK) else None) as scratch:
         scene = os.path.join(scratch, "tiny.msml.xml")
         with open(scene, "w") as out:
             out.write(SCENE)
@@ -126,8 +127,10 @@ def run_row(binaries, row):
     return run_program([os.path.join(binaries, row.command[0]), *row.command[1:]])
 
 
-def run_round(rows, turn, run, say):
-    """One result of each row that still wants one; in rounds over all rows a slow minute meets all of them."""
+def run_round(rows, turn, run, say, failures):
+    """One result of each row that still wants one; in rounds over all rows a slow minute meets all of them.
+
+    What fails is told, and its words are added to `failures`."""
     results = {}
     for row in rows:
         if turn >= row.runs:
@@ -136,7 +139,11 @@ def run_round(rows, turn, run, say):
             say(f"{row.key()}: left out, wants {row.needs_gb:g} GB of free memory")
             continue
         say(f"round {turn + 1}: {row.key()}")
-        results[row.key()] = run(row)
+        try:
+            results[row.key()] = run(row)
+        except (RuntimeError, OSError) as error:
+            say(str(error))
+            failures.append(f"{row.key()}: {error}")
     return results
 
 

@@ -82,14 +82,16 @@ def losses(before, now, allowed=LOSS):
     """What has become worse by more than the allowed share since an earlier table: sentences.
 
     Speed is compared by the ratio to each peer, and by the bytes that the machine would have moved in the same time,
-    which no peer can hide. Both tables are as read_csv gives them; lines that only one of them has are passed over."""
+    which no peer can hide. Both tables are as read_csv gives them. Lines that only one of them has are passed over, and
+    so are ratios where the peer ran beside us in one of them alone."""
     earlier = {key_of(line): line for line in before}
     found = []
     for line in now:
         old = earlier.get(key_of(line))
         if old is None:
             continue
-        speeds = [(f"ratio to {peer}", old.get(peer), line.get(peer)) for peer in PEERS]
+        speeds = [(f"ratio to {peer}", old.get(peer), line.get(peer)) for peer in PEERS
+                  if (peer in old.get("beside", "")) == (peer in line.get("beside", ""))]
         if old.get("moved_gb") and line.get("moved_gb"):
             speeds.append(("speed beside the memory's", 1 / old["moved_gb"], 1 / line["moved_gb"]))
         for what, then, today in speeds:

@@ -50,6 +50,11 @@ class Comparison(unittest.TestCase):
         self.assertEqual(len(found), 1)
         self.assertIn("scene", found[0])
 
+    def test_a_kept_time_is_not_compared_with_a_run_beside(self):
+        head = "work,kind,n,nu,method,DOLFINx,beside\nstatic,tet10,8,0.3,automatic,"
+        self.assertEqual(table.losses(read(head + "9,DOLFINx CalculiX\n"), read(head + "4,CalculiX\n")), [])
+        self.assertEqual(len(table.losses(read(head + "9,DOLFINx\n"), read(head + "4,DOLFINx\n"))), 1)
+
     def test_gains_are_no_losses(self):
         self.assertEqual(table.losses(read(self.before), self.now(0.1, 20, scene=1)), [])
 
@@ -82,6 +87,15 @@ class Lines(unittest.TestCase):
             else:
                 self.assertEqual(str(read_line[name]).removesuffix(".0"), str(value), msg=name)
         self.assertEqual(table.losses([read_line], [read_line]), [])
+
+    def test_a_run_that_fails_leaves_the_others_standing(self):
+        def run(row):
+            if row.work == "b":
+                raise RuntimeError("did not converge")
+            return {"answer": 1}
+        failures = []
+        found = rows.run_round([rows.Row("a"), rows.Row("b"), rows.Row("c", runs=0)], 0, run, lambda text: None, failures)
+        self.assertEqual((found, failures), ({"a": {"answer": 1}}, ["b: did not converge"]))
 
     def test_medians_are_of_numbers_and_the_worst_stays_the_worst(self):
         runs = [{"step": s, "worst": w, "solver": "cg"} for s, w in ((1.0, 5.0), (9.0, 20.0), (2.0, 6.0))]

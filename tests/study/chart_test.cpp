@@ -75,11 +75,12 @@ TEST(Chart, ShowsWhatTheoryKnows) {
 }
 
 TEST(Map, ColoursEachRunByItsFate) {
-  const Table table{{"dt", "k", "error", "status"},
-                    {{"1", "1", "0.01", "done"},
-                     {"10", "1", "0.2", "done"},
-                     {"1", "100", "", "not converged"},
-                     {"10", "100", "7", "done"}}};
+  const Table table{{"dt", "k", "error", "status", "warnings"},
+                    {{"1", "1", "0.01", "done", ""},
+                     {"10", "1", "0.2", "done", ""},
+                     {"1", "100", "", "not converged", ""},
+                     {"10", "100", "7", "done", ""},
+                     {"20", "100", "7", "done", "the motion is not to be trusted"}}};
   Chart chart{.id = "m",
               .title = "",
               .x = "dt",
@@ -94,6 +95,7 @@ TEST(Map, ColoursEachRunByItsFate) {
   EXPECT_EQ(fate(table, 1, chart), Fate::inaccurate);
   EXPECT_EQ(fate(table, 2, chart), Fate::said_so);
   EXPECT_EQ(fate(table, 3, chart), Fate::wrong);
+  EXPECT_EQ(fate(table, 4, chart), Fate::warned);
   chart.theory = {Formula("10/X")};
   const std::string script = gnuplot_script(table, chart, {});
   // Cells meet halfway between the values in the logarithm: at dt = sqrt(10) and k = 10.

@@ -98,6 +98,26 @@ TEST(VtuFile, OfTwoFieldsWithOneNameTheLaterIsWrittenAndRegionsComeLast) {
   EXPECT_EQ(back->cell_fields[0].values, std::vector<double>(cells, 2));
 }
 
+TEST(VtuFile, WithTwoArraysOfOneNameIsRefused) {
+  const test::Folder folder("msml_two");
+  const auto file = [](const std::string& second) {
+    return "<VTKFile type=\"UnstructuredGrid\" version=\"0.1\" byte_order=\"LittleEndian\"><UnstructuredGrid>"
+           "<Piece NumberOfPoints=\"1\" NumberOfCells=\"1\"><PointData><DataArray type=\"Float64\" Name=\"a\" "
+           "format=\"ascii\">3</DataArray></PointData><CellData><DataArray type=\"Float64\" Name=\"a\" "
+           "format=\"ascii\">1</DataArray><DataArray type=\"Int32\" Name=\"" +
+           second +
+           "\" format=\"ascii\">2</DataArray></CellData><Points><DataArray type=\"Float64\" Name=\"Points\" "
+           "NumberOfComponents=\"3\" format=\"ascii\">0 0 0</DataArray></Points><Cells><DataArray type=\"Int32\" "
+           "Name=\"connectivity\" format=\"ascii\">0</DataArray><DataArray type=\"Int32\" Name=\"offsets\" "
+           "format=\"ascii\">1</DataArray><DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">1</DataArray>"
+           "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  };
+  test::put_bytes(folder / "m.vtu", file("a"));
+  EXPECT_THAT(test::read_error(folder / "m.vtu", Type::mesh), HasSubstr("m.vtu: holds two arrays named 'a', of which"));
+  test::put_bytes(folder / "m.vtu", file("b"));
+  EXPECT_EQ(std::get<MeshPtr>(test::all().read(folder / "m.vtu", Type::mesh))->cell_fields.size(), 2U);
+}
+
 TEST(VtuFile, MayHoldPointsAlone) {
   const test::Folder folder("msml_points");
   Mesh mesh;
