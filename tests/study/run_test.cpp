@@ -60,8 +60,8 @@ TEST(StudyRun, AColumnUnderItsOwnWeightIsExactWithQuadraticElements) {
     <reference expression="0, 0, -0.01*(4*Z-Z^2/2)"/> <measure id="error" error="L2"/> <measure probe="tip" component="z"/>
     </study>)xml",
           folder);
-  EXPECT_EQ(ran.table.columns,
-            (std::vector<std::string>{"kind", "n", "status", "unknowns", "error", "tip_z", "warnings", "reason", "key"}));
+  EXPECT_EQ(ran.table.columns, (std::vector<std::string>{"kind", "n", "status", "unknowns", "error", "tip_z",
+                                                         "warnings", "reason", "key"}));
   ASSERT_EQ(ran.table.rows.size(), 6U);
   for (std::size_t row = 0; row < 6; ++row) EXPECT_EQ(ran.table.text(row, "status"), "done");
   EXPECT_LT(ran.table.number(5, "error"), 1e-9);  // round-off of the solver
