@@ -237,20 +237,29 @@ RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10]
   return state;
 }
 
-void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact,
-                      SimplexResult<3, 10>& result) {
-  Lanes H[55][9];
-  for (int k = 0; k < 55; ++k)
-    for (int i = 0; i < 9; ++i) H[k][i] = batch.K[k][i];
-  if (exact) add_rotation_terms(batch, state, H);
+namespace {
+
+/// R H_ab R^T for all blocks.
+void turn(const Tensor<Lanes>& R, const Lanes (&H)[55][9], SimplexResult<3, 10>& result) {
   for (int k = 0; k < 55; ++k) {
     Tensor<Lanes> half;  // R H
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j)
-        half(i, j) = state.R(i, 0) * H[k][j] + state.R(i, 1) * H[k][3 + j] + state.R(i, 2) * H[k][6 + j];
+      for (int j = 0; j < 3; ++j) half(i, j) = R(i, 0) * H[k][j] + R(i, 1) * H[k][3 + j] + R(i, 2) * H[k][6 + j];
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) result.block[k][3 * i + j] = inner<3>(half.c + 3 * i, state.R.c + 3 * j);
+      for (int j = 0; j < 3; ++j) result.block[k][3 * i + j] = inner<3>(half.c + 3 * i, R.c + 3 * j);
   }
+}
+
+}  // namespace
+
+void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact,
+                      SimplexResult<3, 10>& result) {
+  if (!exact) return turn(state.R, batch.K, result);
+  Lanes H[55][9];
+  for (int k = 0; k < 55; ++k)
+    for (int i = 0; i < 9; ++i) H[k][i] = batch.K[k][i];
+  add_rotation_terms(batch, state, H);
+  turn(state.R, H, result);
 }
 
 }  // namespace msml::fe
