@@ -9,10 +9,12 @@
 namespace msml::fe {
 namespace {
 
-std::string advice(const Run& run, Stop stop) {
+std::string advice(const Run& run, const IncrementResult& result) {
   const bool loaded_in_parts = run.model.settings.integrator == Integrator::static_;
   const std::string smaller = loaded_in_parts ? "more loadSteps, or smaller loads" : "a smaller dt";
-  switch (stop) {
+  // Supports that made the matrix regular once hold the body.
+  const bool was_regular = result.residuals.size() > 1 || run.now.increment > 0;
+  switch (result.stop) {
     case Stop::newton_limit:
       return "try " + smaller + ", or more newtonIterations";
     case Stop::diverged:
@@ -28,6 +30,10 @@ std::string advice(const Run& run, Stop stop) {
              "slightly changed state, take a law that pushes back (neoHookeanMaterial form=\"stable\", or "
              "inversion=\"clamped\"), a dynamic timeIntegration, or allowInverted=\"true\" if it is meant";
     case Stop::singular:
+      if (was_regular)
+        return "the body lost its stiffness on the way: the loads pass a limit point, or the law softens without end. "
+               "Try " +
+               smaller + ", arcLength=\"true\", a dynamic timeIntegration, or another law";
       return "a part of the body can move freely: fix it, or join parts that touch only at a node or an edge";
     case Stop::out_of_memory:
       return "try linearSolver=\"CG\" or a coarser mesh";
@@ -72,7 +78,7 @@ void explain(Run& run, const IncrementResult& result, double share) {
   run.outcome.stop = result.stop;
   run.outcome.diagnosis = fmt::format("step {} '{}' stopped {}: {}; residuals {}{}{}; {}", run.now.step + 1, step.name,
                                       when, name(result.stop), residual_text(result), element_text(run, result),
-                                      node_text(run, result), advice(run, result.stop));
+                                      node_text(run, result), advice(run, result));
 }
 
 }  // namespace msml::fe
