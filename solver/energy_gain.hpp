@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs in time that make energy out of nothing.
+// Runs in time that make energy out of nothing, or lose it.
 #pragma once
 #include <string>
 
@@ -7,9 +7,10 @@
 
 namespace msml::fe {
 
-/// A warning where more than half of the energy at the end of a dynamic run came from the time integration: what is
-/// held and lost beside what was there at the start and what loads brought in. Empty otherwise; where supports
-/// move, whose work is only known to the order of the time step; and with viscous stresses.
+/// A warning where more than half of the energy of a dynamic run came, at some time, from the time integration, or got
+/// lost in one that has no damping: what is held and dissipated beside what was there at the start and what loads
+/// brought in. Empty otherwise; where supports move, whose work is only known to the order of the time step; and with
+/// viscous stresses.
 std::string warning_of_energy_gain(const Run& run);
 
 }  // namespace msml::fe

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "msml/core/error.hpp"
@@ -85,7 +86,13 @@ void Run::mark() {
   pull_before = forces.external + now.reaction;
   damping_before = forces.damping;
   measure_energies();
-  if (!energy_at_start) energy_at_start = now.energies.elastic + now.energies.kinetic;
+  const Energies& e = now.energies;
+  const double held = e.elastic + e.kinetic;
+  if (!energy_at_start) energy_at_start = held;
+  const double gain = held + e.dissipated - e.external_work - *energy_at_start;
+  most_gained = std::max(most_gained, gain);
+  most_lost = std::max(most_lost, -gain);
+  most_energy = std::max({most_energy, held, std::abs(e.external_work), e.dissipated});
 }
 
 void Run::account(const Vector& u_before) {

@@ -32,6 +32,8 @@ struct Run {
   FreeMotions free = {};                         ///< rigid motions that the supports of the present step leave
   std::optional<Forces> between = {};            ///< balanced forces, where these are not those at the present time
   std::optional<double> energy_at_start = {};    ///< elastic and kinetic, at the first mark
+  double most_gained = 0, most_lost = 0;         ///< energy beside that at the start, work and dissipation, at any mark
+  double most_energy = 0;                        ///< largest of all of these
 
   /// Takes up what the supports of a static step leave free, if anything.
   void hold(const Step& step, const Mask& fixed);

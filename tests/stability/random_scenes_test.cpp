@@ -108,7 +108,7 @@ Planted planted(unsigned seed) {
         if ((mesh.points.row(node) - Vec3(1, 0.5, 0.5).transpose()).norm() < 1e-9) mesh.points(node, 0) += 2;
       }));
       model.steps[0].face_loads = {pull};
-      return {"bad element", "element", model};
+      return {"bad element", "inverted or flat in the reference mesh", model};
     }
   }
 }

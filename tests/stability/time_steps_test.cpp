@@ -123,7 +123,7 @@ TEST(Newmark, OneSolvePerStepDriftsWhereNewtonsMethodDoesNot) {
             << "; one solve, dt = 0.01: " << fine.energy << "\n";
   EXPECT_NEAR(full.energy, 1, 1e-2);
   EXPECT_GT(one.energy, 2);
-  EXPECT_THAT(drift(1e4, 0.5, 1).warnings, ElementsAre(HasSubstr("makes energy")));
+  EXPECT_THAT(one.warnings, ElementsAre(HasSubstr("makes energy")));
   EXPECT_NEAR(fine.energy, 1, 1e-2);
   EXPECT_THAT(fine.warnings, IsEmpty());
 }
