@@ -41,12 +41,11 @@ std::string warning_of_energy_gain(const Run& run) {
         "and the motion is not to be trusted. Take a smaller dt, more newtonIterations, or timeIntegration = "
         "\"dynamicImplicitEuler\" or \"generalizedAlpha\"",
         run.most_energy, run.most_gained);
-  if (run.most_lost > half && !damps(run.model.settings))
+  if (const double swing = run.most_gained + run.most_lost; swing > half && !damps(run.model.settings))
     return fmt::format(
-        "of an energy of up to {:.4g}, {:.4g} were lost in a time integration that should keep it: the motion is not "
-        "to "
-        "be trusted. Take a smaller dt, or more newtonIterations",
-        run.most_energy, run.most_lost);
+        "of an energy of up to {:.4g}, {:.4g} came and went in a time integration that should keep it: the motion is "
+        "not to be trusted. Take a smaller dt, or more newtonIterations",
+        run.most_energy, swing);
   return "";
 }
 
