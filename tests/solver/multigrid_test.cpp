@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "solver/equations.hpp"
 #include "solver/linear/multigrid/multigrid.hpp"
 #include "tests/solver/meshes.hpp"
@@ -101,6 +103,71 @@ TEST(Multigrid, SolvesAFreeBodyUnderBalancedLoads) {
   const Outcome direct = run(solved_by(model, LinearSolver::direct, 1e-10));
   const Outcome iterated = run(solved_by(model, LinearSolver::cg, 1e-10));
   EXPECT_NEAR(iterated.state.energies.elastic, direct.state.energies.elastic, 1e-8 * direct.state.energies.elastic);
+}
+
+std::vector<float> some_numbers(int count, const Mask& fixed) {
+  std::vector<float> values(static_cast<std::size_t>(count) + 8, 0.0f);
+  for (int k = 0; k < count; ++k)
+    if (!fixed[static_cast<std::size_t>(k)])
+      values[static_cast<std::size_t>(k)] = static_cast<float>(std::sin(1.0 + 12.9898 * k));
+  return values;
+}
+
+// P^T is the transpose of P, and a function that is linear in X is met exactly at mid nodes.
+TEST(Multigrid, CornersCarryLinearFunctionsToMidNodes) {
+  const Model model = beam_model(2, CellKind::tet10, 0.3, Strain::small);
+  const Equations equations(model);
+  const NodeGeometry geometry = equations.geometry();
+  const Mask fixed(static_cast<std::size_t>(equations.size()), 0);
+  const Corners corners(geometry, fixed);
+  std::vector<float> linear(3 * static_cast<std::size_t>(corners.count()) + 8, 0.0f);
+  for (int c = 0; c < corners.count(); ++c)
+    for (int i = 0; i < 3; ++i)
+      linear[static_cast<std::size_t>(3 * c + i)] =
+          static_cast<float>(geometry.positions[3 * corners.node_of()[static_cast<std::size_t>(c)] + (i + 1) % 3]);
+  std::vector<float> fine(fixed.size() + 8, 0.0f);
+  corners.add_prolonged(linear, fine);
+  for (int k = 0; k < equations.size(); ++k)
+    EXPECT_NEAR(fine[static_cast<std::size_t>(k)], geometry.positions[k / 3 * 3 + (k % 3 + 1) % 3], 1e-8);
+
+  const std::vector<float> f = some_numbers(equations.size(), fixed),
+                           c = some_numbers(3 * corners.count(),
+                                            Mask(3 * static_cast<std::size_t>(corners.count()), 0));
+  std::vector<float> Pc(fixed.size() + 8, 0.0f), Pf(c.size(), 0.0f);
+  corners.add_prolonged(c, Pc);
+  corners.restrict_vector(f, Pf);
+  double one = 0, other = 0, size = 0;
+  for (std::size_t k = 0; k < fixed.size(); ++k) one += static_cast<double>(f[k]) * Pc[k], size += f[k] * f[k];
+  for (std::size_t k = 0; k < c.size(); ++k) other += static_cast<double>(c[k]) * Pf[k];
+  EXPECT_NEAR(one, other, 1e-5 * size);  // single precision
+}
+
+/// Iterations for the step matrix of a co-rotated beam that is turned as a whole by an angle.
+long iterations_turned(double angle, LinearSystem& system, const Equations& equations) {
+  const Mat3 R = Eigen::AngleAxisd(angle, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  Vector u(equations.size());
+  for (Eigen::Index k = 0; k < u.size(); k += 3)
+    u.segment<3>(k) = R * equations.positions().segment<3>(k) - equations.positions().segment<3>(k);
+  BlockMatrix A(equations.elements().pattern());
+  Forces forces;
+  equations.evaluate(u, {}, Want::single_tangent, forces, &A);
+  add(A, 900, equations.mass());
+  system.place(u);
+  EXPECT_EQ(system.factor(A, Mask(static_cast<std::size_t>(u.size()), 0)), LinearStatus::done);
+  Vector right(u.size()), x;
+  for (Eigen::Index k = 0; k < u.size(); k += 3) right.segment<3>(k) = R * Vec3(0, 0, std::sin(static_cast<double>(k)));
+  const long before = system.iterations;
+  EXPECT_EQ(system.solve(right, 1e-8, x), LinearStatus::done);
+  return system.iterations - before;
+}
+
+// The matrix of the turned body is that of the body at rest in turned axes: its grids serve as well.
+TEST(Multigrid, TurnsWithTheBody) {
+  const Equations equations(beam_model(4, CellKind::tet4, 0.3, Strain::corotated));
+  const auto system = make_multigrid(equations.geometry());
+  const long at_rest = iterations_turned(0, *system, equations);
+  EXPECT_NEAR(iterations_turned(1, *system, equations), at_rest, 1);
+  EXPECT_NEAR(iterations_turned(2.5, *system, equations), at_rest, 1);
 }
 
 // The second set-up keeps the grids. All steps are linear in the matrix: half the solution of the same residual.
