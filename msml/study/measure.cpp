@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "msml/core/silent_reporter.hpp"
 #include "msml/study/table.hpp"
 
 namespace msml {
@@ -16,15 +17,6 @@ namespace {
 using Json = nlohmann::json;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-class Quiet final : public Reporter {
- public:
-  void progress(double, const std::string&) override {}
-  void note(const std::string&) override {}
-  void warn(const std::string&) override {}
-  void print(const std::string&) override {}
-  void record(const std::string&, const std::string&) override {}
-};
 
 /// Calls an operator of the registry with some attributes given, and returns its first output.
 Value call(const Registry& registry, const std::string& tag, const std::map<std::string, Value>& given) {
@@ -36,7 +28,7 @@ Value call(const Registry& registry, const std::string& tag, const std::map<std:
     record.values.push_back(found == given.end() ? slot.fallback : found->second);
     record.given.push_back(found != given.end());
   }
-  Quiet quiet;
+  SilentReporter quiet;
   Context context(record, quiet, ".", 1);
   (*op)(context);
   return context.outputs[at(op->first_output())];

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "msml/core/silent_reporter.hpp"
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
@@ -17,15 +18,6 @@ namespace {
 
 using Report = std::function<void(const Error&)>;
 using LawPtr = std::shared_ptr<const fe::Law>;
-
-class Silent final : public Reporter {
- public:
-  void progress(double, const std::string&) override {}
-  void note(const std::string&) override {}
-  void warn(const std::string&) override {}
-  void print(const std::string&) override {}
-  void record(const std::string&, const std::string&) override {}
-};
 
 bool varies(const Value& value) {
   const auto* formula = std::get_if<Formula>(&value);
@@ -93,7 +85,7 @@ void read_settings(const Record& args, const Report& fault, fe::Model& model) {
   const Record* solver = first_of(args, "solver");
   if (solver == nullptr || !complete(*solver)) return;
   attempt(*solver, fault, [&] {
-    Silent silent;
+    SilentReporter silent;
     model.settings = make<SettingsBuilder>(*solver)(silent, 1);
     fe::check_settings(model.settings);
   });

@@ -43,6 +43,12 @@ double growth(const IncrementResult& result, bool adaptive) {
 
 }  // namespace
 
+EquilibriumPath begin_path(Run& run, int step) {
+  const Step& now = run.model.steps[static_cast<std::size_t>(step)];
+  run.now.step = step;
+  return {{}, make_supports(now, run.equations.numbering(), run.now.u), run.now.time, now.dt * now.count};
+}
+
 bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   const Motion before = run.now;
   const bool adaptive = run.model.settings.adaptive_step;

@@ -10,11 +10,9 @@ void run_static(Run& run) {
   if (!run.start_at_rest()) return;
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
-    run.now.step = static_cast<int>(s);
+    EquilibriumPath path = begin_path(run, static_cast<int>(s));
     const LoadSet* goal = &run.equations.loads(run.now.step);
     const LoadSet* before = s > 0 ? &run.equations.loads(run.now.step - 1) : nullptr;
-    EquilibriumPath path{
-        {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
     run.hold(step, path.supports.fixed);
     path.loads = [&](double share) {
       ScaledLoads loads{{goal, share, path.time(share)}};

@@ -66,6 +66,9 @@ struct EquilibriumPath {
   double time(double share) const { return start + share * duration; }
 };
 
+/// Enters a step: the path from the present state over the whole of it, whose loads are still to be said.
+EquilibriumPath begin_path(Run& run, int step);
+
 /// Goes along a path from one share to another, in halved pieces where Newton's method fails; at most 2^6 pieces, 2^12
 /// with adaptive_step, where the length of the next piece also follows the number of iterations.
 /// False if that fails: the outcome is explained then, and the present state is the one before.
