@@ -218,6 +218,7 @@ struct Settings {
   double step_tolerance = 1e-3;  ///< of implicit dynamics with adaptive_step: error of a step beside the displacement
   ArcLength arc_length = {};     ///< of static_
   bool allow_inverted = false;   ///< go on where an element of a finite-strain law inverts (det F <= 0)
+  bool untangle = true;          ///< from states with inverted elements, start with the stable neo-Hookean law
   int threads = 1;
 };
 

@@ -37,7 +37,7 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
   result.residuals.push_back(norm);
   const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
   result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
-  result.largest_scale = std::max(result.largest_scale, result.scale);
+  result.largest_scale = std::max({result.largest_scale, result.scale, increment.met});
   result.worst_element = forces_.found.smallest_J_element;
   result.worst_J = forces_.found.smallest_J;
   double worst = -1;

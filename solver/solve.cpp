@@ -45,6 +45,11 @@ Outcome run_model(const Model& model, const Observer& observer) {
   integrate(run);
   outcome.unknowns = count_unknowns(model, equations.numbering(), run.now.step);
   newton.report(outcome);
+  if (run.untangled > 0)
+    outcome.notes.push_back(
+        fmt::format("{} increments began with elements inside out or crushed; the stable "
+                    "neo-Hookean law led the body out of it, and its own laws went on from there",
+                    run.untangled));
   outcome.state = run.state();
   outcome.check = check_answer(run);
   for (const std::string& warning : {warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})

@@ -190,6 +190,7 @@ std::string settings_json(const Simulation& simulation) {
                   {"arcLength", settings.arc_length.on},
                   {"allowUnstable", settings.allow_unstable},
                   {"allowInverted", settings.allow_inverted},
+                  {"untangle", settings.untangle},
                   {"loadSteps", settings.load_steps},
                   {"threads", settings.threads},
                   {"steps", steps_json(simulation)}};

@@ -16,7 +16,7 @@ struct Keys {
   Key<std::string> integration, linear, preconditioner, unit, mass;
   Key<double> damping_mass, damping_stiffness, tolerance, linear_tolerance;
   Key<Integer> newton, load_steps, threads, old_threads;
-  Key<bool> line_search, allow_unstable, adaptive, arc_length, allow_inverted;
+  Key<bool> line_search, allow_unstable, adaptive, arc_length, allow_inverted, untangle;
   Key<Integer> arc_steps;
   Key<double> beta, gamma, spectral_radius, step_tolerance, largest_load, largest_displacement;
   Key<std::string> definiteness;
@@ -130,6 +130,10 @@ void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
       {.unit = "length", .range = positive(), .optional = true, .doc = "of arcLength: of a node, where it ends"});
   keys.allow_inverted =
       tag.parameter<bool>("allowInverted", {.fallback = false, .doc = "go on where elements turn inside out"});
+  keys.untangle = tag.parameter<bool>(
+      "untangle", {.fallback = usual.untangle,
+                   .doc = "where elements start inside out or crushed, find the way with the stable neo-Hookean law; "
+                          "the answer is that of the scene's own laws"});
 }
 
 void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
@@ -193,6 +197,7 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
   settings.spectral_radius = record[keys.spectral_radius];
   settings.allow_unstable = record[keys.allow_unstable];
   settings.allow_inverted = record[keys.allow_inverted];
+  settings.untangle = record[keys.untangle];
   settings.adaptive_step = record[keys.adaptive];
   settings.step_tolerance = record[keys.step_tolerance];
   settings.arc_length.on = record[keys.arc_length];

@@ -14,7 +14,7 @@ IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, do
   run.check_balanced(increment.loads);
   run.equations.begin_step((share - from) * path.duration);
   if (run.equations.has_history()) run.newton.forget();
-  return run.newton.run(increment);
+  return run.reach(increment);
 }
 
 void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) {

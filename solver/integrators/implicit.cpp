@@ -68,7 +68,7 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
   trial.increment.offset = carried(trial.increment.motion, start_forces);
   run.equations.begin_step(h);
   if (run.equations.has_history()) run.newton.forget();
-  trial.result = run.newton.walk(trial.increment);
+  trial.result = run.reach(trial.increment);
   if (trial.result.stop != Stop::converged) return trial;
   trial.velocity = trial.increment.motion.velocity_at(trial.result.u);
   trial.acceleration = trial.increment.motion.acceleration_at(trial.result.u);

@@ -85,6 +85,7 @@ void Run::mark() {
   const Forces& forces = newton.forces();
   pull_before = forces.external + now.reaction;
   damping_before = forces.damping;
+  tangled = forces.found.smallest_J < 0.1;
   measure_energies();
   const Energies& e = now.energies;
   const double held = e.elastic + e.kinetic;

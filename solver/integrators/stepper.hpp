@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "solver/conditions/rigid.hpp"
-#include "solver/newton.hpp"
+#include "solver/untangle.hpp"
 
 namespace msml::fe {
 
@@ -34,6 +34,9 @@ struct Run {
   std::optional<double> energy_at_start = {};    ///< elastic and kinetic, at the first mark
   double most_gained = 0, most_lost = 0;         ///< energy beside that at the start, work and dissipation, at any mark
   double most_energy = 0;                        ///< largest of all of these
+  bool tangled = false;  ///< at the last mark an element had less than a tenth of its volume, or was inside out
+  std::unique_ptr<Untangler> untangler = {};
+  int untangled = 0;  ///< increments that went on from where the untangler led
 
   /// Takes up what the supports of a static step leave free, if anything.
   void hold(const Step& step, const Mask& fixed);
@@ -44,6 +47,9 @@ struct Run {
   /// Throws Error unless these loads leave the free rigid motions alone.
   void check_balanced(const ScaledLoads& loads) const;
   State state() const;
+  /// Newton's way to the end of an increment; from a tangled state first with the stable law, whose answer is where the
+  /// model's own laws start, and from the tangled state itself where that fails.
+  IncrementResult reach(const Increment& increment);
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
   /// Reactions that balance a residual.

@@ -64,6 +64,11 @@ std::shared_ptr<const Law> make(Lame lame, VolumeMeasure measure, double modulus
                                                 Volumetric<Lanes>{measure, lanes_of(modulus)}, facts);
 }
 
+std::shared_ptr<const Law> make_stable(Lame lame, LawFacts facts) {
+  facts.survives_inversion = true;
+  return make<StableNeoHookean>(lame, VolumeMeasure::change, lame.lambda + lame.mu * 5 / 6, facts);
+}
+
 std::shared_ptr<const Law> build(const Record& record, const Keys& keys) {
   const Lame lame = constants(record, keys);
   const std::string& form = record[keys.form];
@@ -79,12 +84,17 @@ std::shared_ptr<const Law> build(const Record& record, const Keys& keys) {
     return make<IsochoricNeoHookean>(lame, U.measure, U.modulus[0], facts);
   }
   if (form == "log") return make<LogNeoHookean>(lame, VolumeMeasure::logarithm, lame.lambda, facts);
+  if (form == "stable") return make_stable(lame, facts);
   facts.survives_inversion = true;
-  if (form == "cubic") return make<CubicNeoHookean>(lame, VolumeMeasure::cubic, lame.lambda, facts);
-  return make<StableNeoHookean>(lame, VolumeMeasure::change, lame.lambda + lame.mu * 5 / 6, facts);
+  return make<CubicNeoHookean>(lame, VolumeMeasure::cubic, lame.lambda, facts);
 }
 
 }  // namespace
+
+std::shared_ptr<const Law> make_stable_neo_hookean(double shear_modulus, double poisson_ratio) {
+  return make_stable({shear_modulus, 2 * shear_modulus * poisson_ratio / (1 - 2 * poisson_ratio)},
+                     {.name = "neoHookeanMaterial", .shear_modulus = shear_modulus, .poisson_ratio = poisson_ratio});
+}
 
 MaterialFactory neo_hookean_material() {
   MaterialFactory material("neoHookeanMaterial", "material",

@@ -77,4 +77,7 @@ struct IsochoricNeoHookean {
   }
 };
 
+/// neoHookeanMaterial form="stable" with a shear modulus (stress) and Poisson's ratio in (-1, 0.5).
+std::shared_ptr<const Law> make_stable_neo_hookean(double shear_modulus, double poisson_ratio);
+
 }  // namespace msml::fe

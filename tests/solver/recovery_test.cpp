@@ -17,11 +17,13 @@ namespace {
 using namespace testing;
 using ::testing::HasSubstr;
 
-/// A bar 3 x 1 x 1 of a law that survives inversion, displaced from X to place(X), without loads.
+/// A bar 3 x 1 x 1 of a law that survives inversion, displaced from X to place(X), without loads, and without another
+/// law's help.
 Model bar(const std::string& form, const std::function<Vec3(const Vec3&)>& place) {
   Model model = make_model(box_mesh(6, 2, 2, {3, 1, 1}, CellKind::tet4), {});
   model.regions[0].law = neo_hookean(form, 1000, 0.3);
   model.settings.newton_iterations = 200;
+  model.settings.untangle = false;
   model.initial_displacement.resize(model.mesh->point_count(), 3);
   for (int n = 0; n < model.mesh->point_count(); ++n) {
     const Vec3 X = model.mesh->points.row(n).transpose();
@@ -125,6 +127,49 @@ TEST(Recovery, ARestInAnotherShapeIsWarnedOf) {
     tangled += off;
   }
   EXPECT_GT(tangled, 0);
+}
+
+std::function<Vec3(const Vec3&)> anywhere(unsigned seed) {
+  return [engine = std::mt19937(seed)](const Vec3&) mutable {
+    std::uniform_real_distribution<double> place(-1, 2);
+    const double x = place(engine), y = place(engine), z = place(engine);
+    return Vec3(x, y, z);
+  };
+}
+
+TEST(Untangling, BringsTheCubicLawHomeFromRandomPlaces) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Model model = bar("cubic", anywhere(seed));
+    model.settings.untangle = true;
+    expect_rest(model, "untangled, seed " + std::to_string(seed));
+  }
+}
+
+TEST(Untangling, LeadsOutOfOnePointWhereTheLawAloneStays) {
+  Model model = bar("cubic", [](const Vec3& X) { return Vec3(1e-3 * X); });
+  model.settings.untangle = true;
+  expect_rest(model, "one point, cubic, untangled");
+}
+
+// The stable law finds the way, and the model's own law the answer.
+TEST(Untangling, EndsInTheEquilibriumOfTheOwnLaw) {
+  const auto sagging = [](const std::function<Vec3(const Vec3&)>& place, const std::string& form, bool untangle) {
+    Model model = bar(form, place);
+    model.settings.untangle = untangle;
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    model.steps[0].gravity = Vec3(0, 0, -8);
+    return solve(model, {});
+  };
+  const auto reference = [](const Vec3& X) { return X; };
+  const Outcome plain = sagging(reference, "cubic", false), untangled = sagging(anywhere(2), "cubic", true);
+  ASSERT_EQ(plain.stop, Stop::converged);
+  ASSERT_EQ(untangled.stop, Stop::converged) << untangled.diagnosis;
+  const double size = plain.state.displacement.cwiseAbs().maxCoeff();
+  EXPECT_LT((untangled.state.displacement - plain.state.displacement).cwiseAbs().maxCoeff(), 1e-6 * size);
+  const Outcome stable = sagging(reference, "stable", false);
+  EXPECT_GT((stable.state.displacement - plain.state.displacement).cwiseAbs().maxCoeff(), 1e-3 * size);
+  EXPECT_THAT(untangled.notes, Contains(HasSubstr("inside out")));
+  EXPECT_THAT(plain.notes, Not(Contains(HasSubstr("inside out"))));
 }
 
 }  // namespace

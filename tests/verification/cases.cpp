@@ -35,7 +35,7 @@ Measure read_measure(const Json& json, const std::string& where) {
 Method read_method(const Json& shared, const Json& own, const std::string& where) {
   refuse_unknown(own,
                  {"name", "measure", "set", "replace", "vary", "values", "expect", "order", "self", "limit", "above",
-                  "exit", "says"},
+                  "exit", "says", "iterations"},
                  where);
   Json json = shared;
   for (const auto& [key, value] : own.items())
@@ -62,6 +62,7 @@ Method read_method(const Json& shared, const Json& own, const std::string& where
   method.above = json.value("above", 0.0);
   method.exit_code = json.value("exit", 0);
   method.says = json.value("says", "");
+  method.iterations = json.value("iterations", 0);
   return method;
 }
 
@@ -70,7 +71,7 @@ Case read_case(const Json& json) {
   out.name = json.at("case").get<std::string>();
   refuse_unknown(json,
                  {"case", "scene", "source", "measure", "smoke", "methods", "set", "replace", "vary", "values",
-                  "expect", "order", "self", "limit", "above", "exit", "says"},
+                  "expect", "order", "self", "limit", "above", "exit", "says", "iterations"},
                  out.name);
   out.scene = json.at("scene").get<std::string>();
   out.source = json.at("source").get<std::string>();

@@ -36,6 +36,7 @@ struct Method {
   double limit = 0;              ///< of the last run's error: relative to `expect` where that is not zero
   double above = 0;              ///< the error must be at least this: where theory says that a method fails
   int exit_code = 0;             ///< what the program must end with
+  int iterations = 0;            ///< of Newton's method over the whole run, at most; 0: as many as it takes
   Measure measure;
   std::string says;  ///< words that its messages must hold
 };

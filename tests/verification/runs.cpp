@@ -72,6 +72,13 @@ double value_of(const Measure& measure, const Json& log, const fs::path& folder)
   return node->at(Json::json_pointer(measure.pointer)).get<double>();
 }
 
+int iterations_of(const Json& log) {
+  int sum = 0;
+  for (const Json& node : log.at("nodes"))
+    if (node.contains("check")) sum += node["check"].at("newtonIterations").get<int>();
+  return sum;
+}
+
 long unknowns_of(const Json& log) {
   for (const Json& node : log.at("nodes"))
     if (node.contains("check")) return node["check"].value("unknowns", 0L);
@@ -132,6 +139,10 @@ Row run_once(const Program& program, const Case& each, const Method& method,
     }
     row.value = value_of(method.measure, log, folder);
     judge(method, row);
+    if (method.iterations == 0) return row;
+    const int taken = iterations_of(log);
+    row.remark = fmt::format("{} Newton iterations", taken);
+    row.pass = row.pass && taken <= method.iterations;
   } catch (const std::exception& error) {
     row.remark = error.what();
   }
