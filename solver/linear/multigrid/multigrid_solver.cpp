@@ -96,7 +96,8 @@ class MultigridSolver final : public LinearSystem {
     fresh_ = false;
     rotations_.clear();
     if (displacement_.size() != reference_.size()) return;
-    node_rotations(*matrix_->pattern, reference_, Vector(geometry_.positions + displacement_), fixed_, rotations_);
+    node_rotations(*matrix_->pattern, reference_, Vector(geometry_.positions + displacement_), fixed_, geometry_.ends,
+                   rotations_);
   }
 
   /// z = R V R^T r with the rotations R of the nodes, in single precision on numbers of order one.
