@@ -34,8 +34,8 @@ Measure read_measure(const Json& json, const std::string& where) {
 
 Method read_method(const Json& shared, const Json& own, const std::string& where) {
   refuse_unknown(own,
-                 {"name", "measure", "set", "replace", "vary", "values", "expect", "order", "self", "limit", "above",
-                  "exit", "says", "iterations"},
+                 {"name", "measure", "set", "files", "replace", "vary", "values", "expect", "order", "more", "self",
+                  "limit", "above", "exit", "says", "iterations"},
                  where);
   Json json = shared;
   for (const auto& [key, value] : own.items())
@@ -56,6 +56,8 @@ Method read_method(const Json& shared, const Json& own, const std::string& where
     throw std::runtime_error(fmt::format("{}: vary and values go together", where));
   if (json.contains("expect")) method.expect = json["expect"].get<double>();
   if (json.contains("order")) method.order = json["order"].get<double>();
+  if (json.contains("files")) method.files = texts(json["files"]);
+  method.more = json.value("more", "");
   method.self = json.value("self", false);
   if (json.contains("measure")) method.measure = read_measure(json["measure"], where);
   method.limit = json.value("limit", 0.0);
@@ -69,10 +71,10 @@ Method read_method(const Json& shared, const Json& own, const std::string& where
 Case read_case(const Json& json) {
   Case out;
   out.name = json.at("case").get<std::string>();
-  refuse_unknown(json,
-                 {"case", "scene", "source", "measure", "smoke", "methods", "set", "replace", "vary", "values",
-                  "expect", "order", "self", "limit", "above", "exit", "says", "iterations"},
-                 out.name);
+  refuse_unknown(
+      json, {"case",   "scene",  "source", "measure", "smoke", "methods", "set",   "files", "replace", "vary",
+             "values", "expect", "order",  "more",    "self",  "limit",   "above", "exit",  "says",    "iterations"},
+      out.name);
   out.scene = json.at("scene").get<std::string>();
   out.source = json.at("source").get<std::string>();
   out.smoke = json.value("smoke", false);

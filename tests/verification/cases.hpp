@@ -24,14 +24,17 @@ struct Measure {
 };
 
 /// One way to compute a case: variables to set and tags to exchange in the scene. Where `vary` names a variable, the
-/// method is run for each of its values, coarse to fine, and must converge with `order`.
+/// method is run for each of its values, coarse to fine, and must converge, where `order` is given with that. A method
+/// that lacks one of its `files`, as those outside the sources may be, is left out.
 struct Method {
   std::string name;
   std::map<std::string, std::string> set, replace;
+  std::map<std::string, std::string> files;  ///< variables that name a file: of the results, or beside the scenes
   std::string vary;
   std::vector<std::map<std::string, std::string>> values;  ///< of `vary`, and of what goes with it
   std::optional<double> expect;  ///< number that the measure must come to; absent: the measure is an error, to be zero
-  std::optional<double> order;   ///< of convergence in 1/value, within 0.15 (more is no fault), in the last pair
+  std::optional<double> order;   ///< of convergence in 1/value, within 0.15, in the last pair
+  std::string more;              ///< why a higher order is no fault; empty: it is one
   bool self = false;             ///< the error of a run is its difference from the one before; the first has none
   double limit = 0;              ///< of the last run's error: relative to `expect` where that is not zero
   double above = 0;              ///< the error must be at least this: where theory says that a method fails

@@ -17,6 +17,9 @@ std::string asked(const Row& row) {
   std::string text;
   if (row.limit > 0) text = fmt::format("<= {:.2g}", row.limit);
   if (row.above > 0) text += fmt::format("{}>= {:.2g}", text.empty() ? "" : ", ", row.above);
+  if (row.order_asked)
+    text += fmt::format("{}order {} {:g}{}", text.empty() ? "" : ", ", row.more.empty() ? "within .15 of" : "at least",
+                        *row.order_asked, row.more.empty() ? "" : ": " + row.more);
   return text;
 }
 std::string verdict(const Row& row) { return row.pass ? "pass" : "FAIL"; }
@@ -52,7 +55,7 @@ void write_markdown(const std::vector<Row>& rows, std::ostream& out, bool whole)
           row.name, row.source);
     last = row.name;
     out << fmt::format("| {} | {} | {} | {} | {} | {} | {} | {:.2f} | {}{} |\n", cell(row.method), row.unknowns,
-                       number(row.value), number(row.expect), short_number(row.error), asked(row), order(row),
+                       number(row.value), number(row.expect), short_number(row.error), cell(asked(row)), order(row),
                        row.seconds, verdict(row), row.remark.empty() ? "" : ": " + cell(row.remark));
   }
 }

@@ -38,6 +38,7 @@ int main(int argc, char** argv) {
   const auto only = std::find(words.begin(), words.end(), "--only");
   const std::string text = only != words.end() && only + 1 != words.end() ? *(only + 1) : "";
   std::vector<Row> rows;
+  Runs runs;
   try {
     const Program program{words[0], words[1], words[2]};
     if (std::find(words.begin(), words.end(), "--matrix") != words.end()) return write_matrix(program) > 0 ? 1 : 0;
@@ -45,7 +46,7 @@ int main(int argc, char** argv) {
       if (!wanted(each, smoke, text)) continue;
       for (const Method& method : each.methods) {
         const std::size_t first = rows.size();
-        for (Row& row : run_method(program, each, method)) rows.push_back(std::move(row));
+        for (Row& row : run_method(program, each, method, runs)) rows.push_back(std::move(row));
         for (std::size_t i = first; i < rows.size(); ++i) std::cout << line(rows[i]) << std::endl;
       }
     }
