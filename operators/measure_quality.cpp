@@ -141,6 +141,8 @@ Operator measure_quality() {
   const auto csv =
       op.output<std::string>("csv", "three tables: percentiles, histograms, worst elements with their centres");
   const auto line = op.output<std::string>("summary", "one line");
+  const auto smallest =
+      op.output<double>("smallestAngle", "smallest angle between two faces of a tetrahedron, degrees");
   op.target("meshFilename", measured_mesh, "file to write the measured mesh to");
   op.target("csvFilename", csv, "file to write the tables to");
   op.note(
@@ -155,6 +157,10 @@ Operator measure_quality() {
     c.set(measured_mesh, with_fields(given, measured));
     c.set(csv, table(given, measured, static_cast<int>(c.get(bins)), static_cast<std::size_t>(c.get(count))));
     c.set(line, text);
+    c.set(smallest,
+          std::min_element(measured.quality.begin(), measured.quality.end(), [](const auto& a, const auto& b) {
+            return a.min_dihedral < b.min_dihedral;
+          })->min_dihedral);
   });
   return op;
 }

@@ -27,16 +27,22 @@ int increments(const fe::Model& model, const fe::Step& step) {
   return model.settings.integrator == fe::Integrator::static_ ? model.settings.load_steps : step.count;
 }
 
-void show_progress(const fe::Model& model, const fe::State& state, Reporter& reporter) {
+/// What was told last, and is told again while an increment takes long.
+struct Progress {
+  double share = 0;
+  std::string words;
+};
+
+Progress progress_at(const fe::Model& model, const fe::State& state) {
   int before = 0, all = 0;
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     if (static_cast<int>(s) < state.step) before += increments(model, model.steps[s]);
     all += increments(model, model.steps[s]);
   }
   const fe::Step& step = model.steps[static_cast<std::size_t>(state.step)];
-  reporter.progress(static_cast<double>(state.increment) / std::max(1, all),
-                    fmt::format("step '{}' {}/{}  t = {:.6g}", step.name, state.increment - before,
-                                increments(model, step), state.time));
+  return {static_cast<double>(state.increment) / std::max(1, all),
+          fmt::format("step '{}' {}/{}  t = {:.6g}", step.name, state.increment - before, increments(model, step),
+                      state.time)};
 }
 
 using Writers = std::vector<std::unique_ptr<simulation::OutputWriter>>;
@@ -46,7 +52,7 @@ using Clock = std::chrono::steady_clock;
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writers& writers, Reporter& reporter,
-                simulation::RunTimes& times) {
+                Progress& progress, simulation::RunTimes& times) {
   Clock::time_point start = Clock::now();
   return fe::solve(simulation.model, [&](const fe::State& state) {
     const Clock::time_point arrived = Clock::now();
@@ -54,7 +60,8 @@ fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writ
     StateFields fields(simulation.model, simulation.body, measurer, state);
     for (const auto& writer : writers)
       if (writer->wants(state)) writer->write(state, fields);
-    show_progress(simulation.model, state, reporter);
+    progress = progress_at(simulation.model, state);
+    reporter.progress(progress.share, progress.words);
     times.output += since(arrived);
     start = Clock::now();
     return true;
@@ -77,12 +84,19 @@ void finish(const Simulation& simulation, const fe::Outcome& outcome, const simu
 }
 
 void simulate_object(Context& context) {
-  const Simulation simulation = simulation::build_model(context.args(), context.reporter(), context.threads());
+  Simulation simulation = simulation::build_model(context.args(), context.reporter(), context.threads());
+  Progress progress;
+  Clock::time_point last = Clock::now();
+  simulation.model.settings.pulse = [&] {
+    if (since(last) < 0.1) return;  // often enough to look alive and to be ended in time
+    last = Clock::now();
+    context.reporter().progress(progress.share, progress.words);
+  };
   simulation.model.check();
   Writers writers = simulation::make_writers(simulation, context.output_folder(), context.reporter());
   const fe::Measurer measurer(simulation.model);
   simulation::RunTimes times;
-  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter(), times);
+  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter(), progress, times);
   StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
   for (const auto& writer : writers) writer->finish(outcome.state, fields);
   finish(simulation, outcome, times, context.output_folder(), context.reporter());

@@ -220,6 +220,8 @@ struct Settings {
   bool allow_inverted = false;   ///< go on where an element of a finite-strain law inverts (det F <= 0)
   bool untangle = true;          ///< from states with inverted elements, start with the stable neo-Hookean law
   int threads = 1;
+  /// Called now and then while an increment is computed; ends the run by an exception of its own. Empty: none.
+  std::function<void()> pulse = {};
 };
 
 struct Model {

@@ -101,6 +101,7 @@ Newton::Newton(const Model& model, const Equations& equations)
 }
 
 void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent) {
+  if (model_.settings.pulse) model_.settings.pulse();
   const Stopwatch watch(seconds_assembly_);
   if (with_tangent) linear_->place(u);
   equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr,

@@ -105,7 +105,7 @@ class StudyRunner {
     write_whole(options.folder / "results.json",
                 study_json(study, table, arguments_.scene.scene, compilation_.graph.units, options, sharing, seconds));
     draw_charts(study, table, options.folder);
-    write_page(study, table, options);
+    write_page(study, table, options, sharing, seconds);
     if (!arguments_.scene.quiet)
       std::fprintf(stderr, "study %s: %s, %zu nodes computed, %zu taken from other runs; see %s\n", study.id.c_str(),
                    duration(seconds).c_str(), sharing.computed, sharing.shared,
@@ -128,10 +128,21 @@ class StudyRunner {
     }
   }
 
-  void write_page(const Study& study, const Table& table, const StudyOptions& options) const {
-    const std::string about = fmt::format("Made by msml {} from {}, on {}, {} thread{}; times are medians of {}.",
-                                          MSML_VERSION, fs::path(arguments_.scene.scene).filename().string(), machine(),
-                                          options.threads, options.threads == 1 ? "" : "s", study.repetitions());
+  static std::string timing(const Study& study) {
+    if (!study.timed()) return "";
+    const std::string enough =
+        study.enough > 0 ? fmt::format(", of fewer where those took {:g} s (column passes)", study.enough) : "";
+    return fmt::format(" Times are medians of {}{}.", study.repetitions(), enough);
+  }
+
+  void write_page(const Study& study, const Table& table, const StudyOptions& options, const Sharing& sharing,
+                  double seconds) const {
+    const std::string about = fmt::format(
+        "Made by msml {} from {}, on {}, {} thread{}, {} at once.{} This session took {}: {} nodes were computed, {} "
+        "results taken from other runs{}.",
+        MSML_VERSION, fs::path(arguments_.scene.scene).filename().string(), machine(), options.threads,
+        options.threads == 1 ? "" : "s", study.alone() ? "one run" : fmt::format("{} runs", options.jobs),
+        timing(study), duration(seconds), sharing.computed, sharing.shared, options.share ? "" : " (sharing is off)");
     const Page page = make_page(study, table, about);
     write_whole(options.folder / "page.md", to_markdown(page));
     if (arguments_.html) write_whole(options.folder / "page.html", to_html(page, options.folder));

@@ -37,11 +37,12 @@ void check_measure(Work& work, const Study& study, const Measure& measure) {
   if (!measure.of.empty() && !is_node(work, measure.of))
     work.fault(measure.where, fmt::format("measure '{}': the scene has no task or output {}", quoted_value(measure.id),
                                           quoted_value(measure.of)));
-  static const std::set<std::string> times{"total", "simulation", "step", "setup", "assembly", "linear"};
+  static const std::set<std::string> times{"total", "own", "simulation", "step", "setup", "assembly", "linear"};
   if (measure.quantity == Quantity::time && !times.contains(measure.what) && !is_node(work, measure.what))
-    work.fault(measure.where, fmt::format("time = {} is none of total, simulation, step, setup, assembly, linear, and "
-                                          "no task has this id",
-                                          quoted_value(measure.what)));
+    work.fault(measure.where,
+               fmt::format("time = {} is none of total, own, simulation, step, setup, assembly, linear, and "
+                           "no task has this id",
+                           quoted_value(measure.what)));
   if (measure.against_truth && !study.truth) work.fault(measure.where, "an error needs a <reference> in the study");
 }
 
@@ -73,7 +74,7 @@ void check_extrapolation(Work& work, const Study& study) {
 }
 
 void check_study(Work& work, const Study& study, const FaultSink& fault) {
-  std::set<std::string> columns{"unknowns", "status", "reason", "key", share_column};
+  std::set<std::string> columns{"unknowns", "status", "passes", "warnings", "reason", "key", share_column};
   for (const Vary& vary : study.vary)
     for (const std::string& name : vary.variables) {
       check_variable(work, name, vary.where);

@@ -102,6 +102,7 @@ class Scheduler {
     if (!options_.shelf || !options_.shelf->take(node, shelved)) return false;
     results_[at(node)] = std::move(shelved.outputs);
     report = std::move(shelved.report);
+    report.taken = true;
     return true;
   }
 

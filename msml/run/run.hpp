@@ -18,6 +18,7 @@ enum class NodeStatus : std::uint8_t { waiting, done, failed };
 struct NodeReport {
   NodeStatus status = NodeStatus::waiting;
   double seconds = 0;
+  bool taken = false;            ///< from a shelf: the time is that of the run that computed it
   std::size_t output_bytes = 0;  ///< held by its values
   std::size_t peak_bytes = 0;    ///< most memory of the whole process while it ran
   std::string summary;           ///< of its first output

@@ -81,7 +81,7 @@ std::string chart_head(const Chart& chart, const Frame& frame, const ChartStyle&
          fmt::format(
              "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset "
              "key\n"
-             "set rmargin {}\n",
+             "set style textbox opaque noborder margins 0.3,0.1\nset rmargin {}\n",
              right);
 }
 

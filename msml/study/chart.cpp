@@ -126,7 +126,7 @@ class Drawing {
     std::size_t width = 2;
     if (curves_.size() > 1)
       for (const Curve& curve : curves_) width = std::max(width, curve.name.size() + 3);
-    return std::min<std::size_t>(width, 34);
+    return std::min<std::size_t>(width * 9 / 10, 32);  // letters are narrower than gnuplot takes them to be
   }
 
   bool has_bars(const std::string& column) const { return table_.find(column + "_low") >= 0; }
@@ -178,8 +178,9 @@ class Drawing {
       const Point& last = curves_[i].points.back();
       const double bar = table_.number(last.row, chart_.x + "_high");
       const double end = x_.share(std::isfinite(bar) ? std::max(bar, last.x) : last.x);
-      text += fmt::format("set label {} at graph {:.4f}, graph {:.4f} left offset 0.8,0 noenhanced tc rgb \"{}\"\n",
-                          quoted(curves_[i].name), std::max(end, 0.0), y, colours[i % colours.size()]);
+      text += fmt::format(
+          "set label {} at graph {:.4f}, graph {:.4f} left offset 0.8,0 noenhanced boxed front tc rgb \"{}\"\n",
+          quoted(curves_[i].name), std::max(end, 0.0), y, colours[i % colours.size()]);
     }
     return text;
   }
@@ -201,7 +202,7 @@ class Drawing {
       };
       text += edge(left, foot, left + width, foot + height) + edge(left, foot, left, foot + height) +
               edge(left, foot + height, left + width, foot + height);
-      text += fmt::format("set label \"{:.3g}\" at graph {:.4f},{:.4f} left tc rgb \"#606060\"\n", slope,
+      text += fmt::format("set label \"{:.3g}\" at graph {:.4f},{:.4f} left boxed tc rgb \"#606060\"\n", slope,
                           left + 0.35 * width, foot + 0.62 * height + (slope < 0 ? 0.05 : -0.05));
       left += width + 0.05;
     }
@@ -222,7 +223,7 @@ class Drawing {
     }
     if (points.empty()) return {};
     return fmt::format(
-        "$failed << EOD\n{}EOD\nset label \"× {} run{} without a result\" at graph 0.99, graph 0.97 right "
+        "$failed << EOD\n{}EOD\nset label \"× {} run{} without a result\" at screen 0.99, screen 0.025 right "
         "tc rgb \"#B00000\"\n",
         points, count, count == 1 ? "" : "s");
   }

@@ -127,11 +127,14 @@ class Costs {
   bool add_costs(const std::vector<std::string>& group, const std::string& cost, double level, Cells& rows) const {
     std::map<std::string, double> needed;
     double best = 0;
-    for (const Curve& curve : curves(table_, cost, subject_.error, group, true))
+    for (Curve& curve : curves(table_, cost, subject_.error, group, true)) {
+      // As in the table, from coarse to fine: a time that is disturbed must not change the order.
+      std::sort(curve.points.begin(), curve.points.end(), [](const Point& a, const Point& b) { return a.row < b.row; });
       if (const auto x = reaches(curve.points, level)) {
         needed[curve.name] = *x;
         best = best == 0 ? *x : std::min(best, *x);
       }
+    }
     for (auto& row : rows) {
       const auto found = needed.find(row[1]);
       row.push_back(found == needed.end() ? "" : digits(found->second));

@@ -105,10 +105,11 @@ MeasureKeys describe_measure(Description& tag) {
       tag.parameter<bool>("relative", {.fallback = true, .doc = "divide the error by the norm of the reference"});
   k.of = tag.parameter<std::string>(
       "of", {.optional = true, .doc = "scene output (or task) that is measured; default: the first series of states"});
-  k.time = tag.parameter<std::string>(
-      "time", {.optional = true,
-               .doc = "seconds: total (of all nodes that run), simulation, step (of one time step), setup, assembly, "
-                      "linear, or the id of a task"});
+  k.time =
+      tag.parameter<std::string>("time", {.optional = true,
+                                          .doc = "seconds: total (of all nodes), own (of those that no earlier run "
+                                                 "computed), simulation, step (of one time step), setup, assembly, "
+                                                 "linear, or the id of a task"});
   k.memory =
       tag.parameter<std::string>("memory", {.optional = true, .choices = {"peak", "matrix", "factor"}, .doc = "bytes"});
   k.iterations = tag.parameter<std::string>(
@@ -249,7 +250,7 @@ Part<Chart> chart_tag() {
 struct StudyKeys {
   Key<std::string> id, title, combine;
   Key<Integer> samples, seed, repeat;
-  Key<double> limit;
+  Key<double> enough, limit;
 };
 
 Description study_tag(StudyKeys& k) {
@@ -266,6 +267,11 @@ Description study_tag(StudyKeys& k) {
   k.repeat = tag.parameter<Integer>("repeat", {.range = closed(1, 1000),
                                                .optional = true,
                                                .doc = "how often each timing is taken; default 5, the median counts"});
+  k.enough = tag.parameter("enough", {.unit = "seconds",
+                                      .range = positive(),
+                                      .optional = true,
+                                      .doc = "a run whose passes have taken this long is not repeated again; the "
+                                             "column passes says how often it was timed"});
   k.limit =
       tag.parameter("limit", {.unit = "seconds",
                               .range = positive(),
@@ -317,9 +323,12 @@ Study make_study(const Record& record, const FaultSink& fault) {
   study.seed = static_cast<int>(record[k.seed]);
   study.repeat = record.has(k.repeat) ? static_cast<int>(record[k.repeat]) : 0;
   study.limit = record.has(k.limit) ? record[k.limit] : 0;
+  study.enough = record.has(k.enough) ? record[k.enough] : 0;
   for (const Record* each : record.of_category("vary")) study.vary.push_back(build<Vary>(*each, fault));
   for (const Record* each : record.of_category("reference")) study.truth = build<Truth>(*each, fault);
   for (const Record* each : record.of_category("measure")) study.measures.push_back(build<Measure>(*each, fault));
+  if (study.enough > 0 && !study.timed())
+    fault(record.where, "enough ends the repetition of timings, but no time is measured");
   for (Measure& m : study.measures) {
     const bool limit = m.against_truth && study.truth && !study.truth->extrapolate.empty();
     m.extrapolated = limit && m.quantity != Quantity::error;

@@ -71,13 +71,15 @@ std::vector<Point> pareto_front(std::vector<Point> points) {
 }
 
 std::optional<double> reaches(const std::vector<Point>& points, double level) {
+  std::optional<double> least;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Point &a = points[i - 1], &b = points[i];
     if (a.y <= level || b.y > level) continue;
     const double s = (std::log(level) - std::log(a.y)) / (std::log(b.y) - std::log(a.y));
-    return std::exp(std::log(a.x) + s * (std::log(b.x) - std::log(a.x)));
+    const double x = std::exp(std::log(a.x) + s * (std::log(b.x) - std::log(a.x)));
+    least = std::min(x, least.value_or(x));
   }
-  return std::nullopt;
+  return least;
 }
 
 }  // namespace msml

@@ -35,8 +35,9 @@ std::optional<Slope> fitted_slope(const std::vector<Point>& points);
 /// The points that no other beats in both x and y, x ascending.
 std::vector<Point> pareto_front(std::vector<Point> points);
 
-/// The x at which a curve first reaches y <= `level`, between its points by a straight line in the logarithms; nothing
-/// if it never does, or is below from its first point on (then nothing is known of cheaper settings).
+/// The smallest x at which a curve, followed from coarse to fine, comes down to y <= `level`, between its points by a
+/// straight line in the logarithms; nothing if it never does, or is below from its first point on (then nothing is
+/// known of cheaper settings).
 std::optional<double> reaches(const std::vector<Point>& points, double level);
 
 }  // namespace msml

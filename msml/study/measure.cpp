@@ -90,9 +90,10 @@ double increments(const Json& settings) {
 
 double seconds(const Measure& wanted, const Finished& finished) {
   const auto& nodes = finished.result.nodes;
-  if (wanted.what == "total") {
+  if (wanted.what == "total" || wanted.what == "own") {
     double sum = 0;
-    for (const int node : finished.scene.plan.order) sum += nodes[at(node)].seconds;
+    for (const int node : finished.scene.plan.order)
+      if (wanted.what == "total" || !nodes[at(node)].taken) sum += nodes[at(node)].seconds;
     return sum;
   }
   const auto spent = [&](const char* part) {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "msml/study/costs.hpp"
-#include "msml/study/fit.hpp"
+#include "msml/study/readings.hpp"
 
 namespace msml {
 namespace {
@@ -28,8 +28,8 @@ class Writer {
     heading(study_.title.empty() ? study_.id : study_.title);
     paragraph(about + " " + outcome());
     for (const Chart& chart : study_.charts) add({Block::Kind::picture, chart.id, {}});
-    slopes();
-    for (Block& block : cost_blocks(study_, table_)) add(std::move(block));
+    for (const Page& part : {slope_blocks(study_, table_), passing_blocks(study_, table_), cost_blocks(study_, table_)})
+      for (const Block& block : part) add(block);
     if (study_.combine == Combine::latin_hypercube) spread();
     failures();
     heading("All runs");
@@ -52,30 +52,6 @@ class Writer {
     for (const auto& [status, count] : counts) text += fmt::format(" {} {},", count, status);
     text.back() = '.';
     return text;
-  }
-
-  void slopes() {
-    Cells cells{{"y", "over x", "curve", "slope", "95 % confidence", "runs"}};
-    for (const Chart& chart : study_.charts) {
-      if (!chart.axes.log_x || !chart.axes.log_y || !chart.color.empty()) continue;
-      for (const Curve& curve : curves(filtered(table_, chart.only), chart.x, chart.y, chart.group, true))
-        if (const auto fit = fitted_slope(curve.points))
-          cells.push_back({chart.y, chart.x, name_of(chart, curve), fmt::format("{:.2f}", fit->slope),
-                           std::isfinite(fit->half_width) ? fmt::format("± {:.2f}", fit->half_width) : "two runs only",
-                           std::to_string(fit->count)});
-    }
-    if (cells.size() == 1) return;
-    heading("Fitted slopes");
-    paragraph(
-        "Least squares of log y over log x. Against unknowns in three dimensions, order p of the mesh size is a "
-        "slope of -p/3.");
-    table(std::move(cells));
-  }
-
-  static std::string name_of(const Chart& chart, const Curve& curve) {
-    std::string name = curve.name;
-    for (const auto& [variable, value] : chart.only) name += fmt::format("{}{}", name.empty() ? "" : ", ", value);
-    return name;
   }
 
   void spread() {

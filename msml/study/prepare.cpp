@@ -59,7 +59,7 @@ class Preparation {
   StudyRun run(const Settings& settings) {
     StudyRun run{.settings = settings, .study = study_, .scene = {}, .reference = {}, .reason = {}, .key = {}};
     Compilation compilation = compiled(settings);
-    std::string key = fmt::format("{} {} {}", MSML_VERSION, study_.repetitions(), study_.limit);
+    std::string key = fmt::format("{} {} {} {}", MSML_VERSION, study_.repetitions(), study_.enough, study_.limit);
     for (const auto& [name, value] : settings) key += fmt::format(" {}={}", name, value);
     if (const std::string fault = first_fault(compilation); !fault.empty()) {
       run.reason = fault;

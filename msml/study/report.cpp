@@ -44,7 +44,7 @@ std::string machine() {
 }
 
 std::map<std::string, std::string> column_units(const Study& study) {
-  std::map<std::string, std::string> units{{"unknowns", "1"}};
+  std::map<std::string, std::string> units{{"unknowns", "1"}, {"passes", "1"}};
   for (const Measure& m : study.measures) {
     units[m.id] = m.unit;
     if (m.quantity == Quantity::time) units[m.id + "_low"] = units[m.id + "_high"] = m.unit;
@@ -53,7 +53,7 @@ std::map<std::string, std::string> column_units(const Study& study) {
 }
 
 std::map<std::string, std::string> column_labels(const Study& study) {
-  std::map<std::string, std::string> labels;
+  std::map<std::string, std::string> labels{{share_column, "share of all runs"}};
   for (const Measure& m : study.measures) {
     std::string& label = labels[m.id];
     const std::string relative = m.relative ? "relative " : "";
@@ -61,9 +61,18 @@ std::map<std::string, std::string> column_labels(const Study& study) {
       label = fmt::format("{}{} error of {}", relative, m.what, m.field);
     else if (m.quantity == Quantity::probe && m.against_truth)
       label = fmt::format("{}error at {}", relative, m.of);
+    else if (m.quantity == Quantity::probe)
+      label = fmt::format("{} ({}{}{} at the end)", m.id, m.what, m.what.empty() ? "" : " of ", m.of);
+    else if (m.quantity == Quantity::energy)
+      label = fmt::format("{}: energy made or lost, relative", m.id);
+    else if (m.quantity == Quantity::memory)
+      label = fmt::format("memory: {} [bytes]", m.what);
+    else if (m.quantity == Quantity::iterations)
+      label = m.what == "cg" ? "iterations of conjugate gradients" : fmt::format("{} iterations", m.what);
     else if (m.quantity == Quantity::time)
       label = m.what == "step"    ? "time of one step [s]"
               : m.what == "total" ? "time of all nodes [s]"
+              : m.what == "own"   ? "time of nodes that are not shared [s]"
                                   : fmt::format("time of {} [s]", m.what);
     else
       label = m.unit.empty() || m.unit == "1" ? m.id : fmt::format("{} [{}]", m.id, m.unit);
@@ -80,6 +89,7 @@ std::string study_json(const Study& study, const Table& table, const std::string
             {"machine", machine()},
             {"threads", options.threads},
             {"repetitions", study.repetitions()},
+            {"enough", study.enough > 0 ? Json(study.enough) : Json()},
             {"limit", study.limit > 0 ? Json(study.limit) : Json()},
             {"seconds", seconds},
             {"nodesComputed", sharing.computed},

@@ -3,17 +3,18 @@
 #include "msml/study/runner.hpp"
 
 #include <fmt/format.h>
-#include <sched.h>
 
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <map>
 #include <mutex>
 #include <thread>
 
 #include "msml/core/atomic_file.hpp"
 #include "msml/study/extrapolate.hpp"
 #include "msml/study/measure.hpp"
+#include "msml/study/pinned.hpp"
 
 namespace msml {
 namespace {
@@ -65,16 +66,6 @@ std::string warnings_of(const RunResult& result) {
   return text;
 }
 
-/// The processor's first threads, so that timings are not disturbed by moves between processors.
-void pin(int threads) {
-  cpu_set_t allowed, some;
-  CPU_ZERO(&some);
-  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
-  for (int cpu = 0, taken = 0; cpu < CPU_SETSIZE && taken < threads; ++cpu)
-    if (CPU_ISSET(cpu, &allowed)) CPU_SET(cpu, &some), ++taken;
-  ::sched_setaffinity(0, sizeof some, &some);
-}
-
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -89,7 +80,7 @@ class Runner {
       : study_(study), registry_(registry), options_(options), results_(results) {}
 
   std::vector<std::string> row(const StudyRun& run, std::size_t number) {
-    Row row{.status = "refused", .reason = run.reason, .warnings = {}, .unknowns = {}, .samples = {}};
+    Row row{.status = "refused", .reason = run.reason, .warnings = {}, .unknowns = {}, .passes = 0, .samples = {}};
     row.samples.resize(study_.measures.size());
     if (run.scene) {
       try {
@@ -107,6 +98,7 @@ class Runner {
   struct Row {
     std::string status, reason, warnings;
     std::optional<double> unknowns;
+    int passes = 0;                            ///< that were measured
     std::vector<std::vector<double>> samples;  ///< per measure, one per pass
   };
 
@@ -115,13 +107,15 @@ class Runner {
     std::optional<RunResult> truth;
     if (run.reference) {
       truth_shelf.emplace(results_, run.reference->keys, 0);
-      truth = pass(*run.reference, *truth_shelf, folder / "reference", 0);
-      if (!truth->errors.empty()) throw Error(reference_failed + truth->errors.front().str(), {}, Failure::internal);
+      truth = reference_result(*run.reference, *truth_shelf, folder / "reference");
     }
+    double spent = 0;
     for (int repetition = 0; repetition < study_.repetitions(); ++repetition) {
+      if (repetition > 0 && study_.enough > 0 && spent >= study_.enough) break;
       RunShelf shelf(results_, run.scene->keys, static_cast<std::size_t>(repetition));
       const RunResult result = pass(*run.scene, shelf, folder, study_.limit);
       const Finished finished{*run.scene, result, shelf};
+      spent += result.seconds;
       row.unknowns = unknowns(finished);
       row.warnings = warnings_of(result);
       if (!result.errors.empty()) throw result.errors.front();
@@ -131,7 +125,23 @@ class Runner {
         if (repetition == 0 || run.study.measures[i].quantity == Quantity::time)
           row.samples[i].push_back(
               measure(run.study.measures[i], run, finished, reference ? &*reference : nullptr, registry_));
+      ++row.passes;
     }
+  }
+
+  /// A reference that failed once is not tried again for the next run.
+  RunResult reference_result(const Prepared& reference, RunShelf& shelf, const fs::path& folder) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (const auto known = failed_.find(&reference); known != failed_.end())
+        throw Error(known->second, {}, Failure::internal);
+    }
+    RunResult result = pass(reference, shelf, folder, 0);
+    if (result.errors.empty()) return result;
+    const std::string why = reference_failed + result.errors.front().str();
+    const std::lock_guard lock(mutex_);
+    failed_[&reference] = why;
+    throw Error(why, {}, Failure::internal);
   }
 
   RunResult pass(const Prepared& scene, RunShelf& shelf, const fs::path& folder, double limit) {
@@ -146,6 +156,7 @@ class Runner {
     for (const auto& [name, value] : run.settings) cells.push_back(value);
     cells.push_back(row.status);
     cells.push_back(row.unknowns ? digits(*row.unknowns) : "");
+    if (study_.timed()) cells.push_back(std::to_string(row.passes));
     for (std::size_t i = 0; i < study_.measures.size(); ++i) {
       const auto& samples = row.samples[i];
       const bool timed = study_.measures[i].quantity == Quantity::time;
@@ -169,6 +180,8 @@ class Runner {
   const Registry& registry_;
   const StudyOptions& options_;
   SharedResults& results_;
+  std::mutex mutex_;
+  std::map<const Prepared*, std::string> failed_;  ///< references, and why
 };
 
 /// The row of an earlier session with this key, or null.
@@ -204,6 +217,7 @@ std::vector<std::string> all_used(const StudyRun& run) {
 std::vector<std::string> study_columns(const Study& study) {
   std::vector<std::string> columns = study.variables();
   columns.insert(columns.end(), {"status", "unknowns"});
+  if (study.timed()) columns.emplace_back("passes");
   for (const Measure& each : study.measures) {
     columns.push_back(each.id);
     if (each.quantity == Quantity::time) columns.insert(columns.end(), {each.id + "_low", each.id + "_high"});
@@ -215,7 +229,8 @@ std::vector<std::string> study_columns(const Study& study) {
 
 Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const Registry& registry,
                 const StudyOptions& options, const Table& known, const RowSink& sink, Sharing& sharing) {
-  if (study.timed()) pin(options.threads);
+  std::optional<Pinned> pinned;
+  if (study.timed()) pinned.emplace(options.threads);
   const std::vector<StudyRun> runs = apart(all_runs, options.share);
   Table table{study_columns(study), std::vector<std::vector<std::string>>(runs.size())};
   std::vector<std::size_t> open;

@@ -22,7 +22,8 @@ struct Sharing {
   std::size_t computed = 0, shared = 0;
 };
 
-/// The columns of a study's table: variables, status, unknowns, measures (a time with its lowest and highest value in
+/// The columns of a study's table: variables, status, unknowns, where a time is measured how
+/// often it was (passes), measures (a time with its lowest and highest value in
 /// ID_low and ID_high, an extrapolated error with the number itself in ID_value), warnings, reason, key.
 std::vector<std::string> study_columns(const Study& study);
 

@@ -80,7 +80,9 @@ struct Study {
   Combine combine = Combine::product;
   int samples = 0;  ///< of a Latin hypercube
   int seed = 1;
-  int repeat = 0;    ///< of timings; 0: 5 where time is measured, else 1
+  int repeat = 0;  ///< of timings; 0: 5 where time is measured, else 1
+  double enough =
+      0;  ///< seconds of a run, all its passes together, after which it is not repeated again; 0: no such end
   double limit = 0;  ///< seconds of one run; 0: none
   std::vector<Vary> vary;
   std::optional<Truth> truth;

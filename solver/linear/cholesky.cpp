@@ -10,7 +10,7 @@ namespace {
 
 class Cholesky final : public LinearSystem {
  public:
-  explicit Cholesky(int threads) : threads_(threads) {
+  Cholesky(int threads, std::size_t memory) : threads_(threads), memory_(memory) {
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_SUPERNODAL;
@@ -37,6 +37,10 @@ class Cholesky final : public LinearSystem {
       const BlasThreads blas(1);
       factor_ = cholmod_analyze(&view, &common_);
       if (!factor_) return failure();
+      if (factor_bytes() > memory_) {
+        release();
+        return LinearStatus::out_of_memory;
+      }
       large_ = common_.fl > 2e10;
     }
     const BlasThreads blas(large_ ? threads_ : 1);
@@ -103,6 +107,7 @@ class Cholesky final : public LinearSystem {
   }
 
   int threads_;
+  std::size_t memory_;
   bool large_ = false;  ///< enough operations that waking a second thread for each dense block pays
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
@@ -114,6 +119,8 @@ class Cholesky final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_cholesky(int threads) { return std::make_unique<Cholesky>(threads); }
+std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory) {
+  return std::make_unique<Cholesky>(threads, memory);
+}
 
 }  // namespace msml::fe

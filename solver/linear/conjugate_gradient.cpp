@@ -24,8 +24,8 @@ void for_nodes(Eigen::Index nodes, const Body& body) {
 
 class ConjugateGradient final : public LinearSystem {
  public:
-  explicit ConjugateGradient(Preconditioner kind)
-      : kind_(kind == Preconditioner::automatic ? Preconditioner::block_jacobi : kind) {}
+  ConjugateGradient(Preconditioner kind, std::function<void()> pulse)
+      : kind_(kind == Preconditioner::automatic ? Preconditioner::block_jacobi : kind), pulse_(std::move(pulse)) {}
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
     matrix_ = &A;
@@ -71,6 +71,7 @@ class ConjugateGradient final : public LinearSystem {
 
  private:
   void precondition(const Vector& r, Vector& z) const {
+    if (pulse_) pulse_();
     if (kind_ == Preconditioner::none) {
       z = r;
     } else if (kind_ == Preconditioner::incomplete_cholesky) {
@@ -120,6 +121,7 @@ class ConjugateGradient final : public LinearSystem {
   }
 
   Preconditioner kind_;
+  std::function<void()> pulse_;
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   LowerTriangle lower_;
@@ -130,8 +132,8 @@ class ConjugateGradient final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner) {
-  return std::make_unique<ConjugateGradient>(preconditioner);
+std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner, std::function<void()> pulse) {
+  return std::make_unique<ConjugateGradient>(preconditioner, std::move(pulse));
 }
 
 }  // namespace msml::fe

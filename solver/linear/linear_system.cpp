@@ -119,7 +119,8 @@ std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, const
   if (factored) return make_cholesky(settings.threads);
   const bool multigrid = settings.preconditioner == Preconditioner::multigrid ||
                          (settings.preconditioner == Preconditioner::automatic && geometry.solid);
-  auto iterative = multigrid ? make_multigrid(geometry) : make_conjugate_gradient(settings.preconditioner);
+  auto iterative = multigrid ? make_multigrid(geometry, settings.pulse)
+                             : make_conjugate_gradient(settings.preconditioner, settings.pulse);
   if (unknowns <= largest_factor) return std::make_unique<WithFallback>(settings, std::move(iterative));
   return iterative;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "solver/block_matrix.hpp"
+#include "solver/linear/available_memory.hpp"
 #include "solver/linear/node_geometry.hpp"
 #include "solver/model.hpp"
 
@@ -51,10 +52,12 @@ class LinearSystem {
   bool gave_up = false;  ///< CG missed its tolerance once, and Cholesky has taken over
 };
 
-std::unique_ptr<LinearSystem> make_cholesky(int threads);
-std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner);
+/// Refuses, as out_of_memory, a factor larger than `memory` bytes: the system would rather end the whole program.
+std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory = available_memory());
+/// `pulse` is called in each iteration; an exception of its own ends the solution.
+std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner, std::function<void()> pulse = {});
 /// Conjugate gradients preconditioned by multigrid.
-std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry);
+std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry, std::function<void()> pulse = {});
 /// L D L^T with pivots of order one and two, by MUMPS in the order of METIS; counts negative pivots and refuses a
 /// singular matrix, but never an indefinite one.
 std::unique_ptr<LinearSystem> make_indefinite(int threads);

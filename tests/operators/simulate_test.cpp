@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -155,8 +156,10 @@ TEST(Simulate, ProgressCountsTheStepsOfEachStage) {
       language.tag("step", "step", {{"name", std::string("first")}, {"dt", 0.5}, {"iterations", Integer{1}}}),
       language.tag("step", "step", {{"name", std::string("second")}, {"dt", 0.25}, {"iterations", Integer{2}}})};
   const Ran ran = run(language, scene, folder);
-  EXPECT_THAT(ran.listener.words, ElementsAre("step 'first' 0/1  t = 0", "step 'first' 1/1  t = 0.5",
-                                              "step 'second' 1/2  t = 0.75", "step 'second' 2/2  t = 1"));
+  std::vector<std::string> words = ran.listener.words;  // said again where a step takes long
+  words.erase(std::unique(words.begin(), words.end()), words.end());
+  EXPECT_THAT(words, ElementsAre("step 'first' 0/1  t = 0", "step 'first' 1/1  t = 0.5", "step 'second' 1/2  t = 0.75",
+                                 "step 'second' 2/2  t = 1"));
 }
 
 TEST(Simulate, TheCheckIsPrintedAndRecorded) {

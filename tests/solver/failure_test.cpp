@@ -99,6 +99,25 @@ TEST(Failure, ConjugateGradientsAloneNameTheirLimit) {
   EXPECT_EQ(solver->solve(Vector::Ones(equations.size()), 1e-30, x), LinearStatus::limit);
 }
 
+// A limit of time ends an increment from inside, in Newton's iteration and in that of the linear solver.
+TEST(Failure, AnIncrementEndsWhereItsPulseThrows) {
+  Model model = beam_model(1, CellKind::tet4, 0.3, Strain::small);
+  model.settings.linear_solver = LinearSolver::cg;
+  for (const Preconditioner preconditioner : {Preconditioner::block_jacobi, Preconditioner::multigrid}) {
+    model.settings.preconditioner = preconditioner;
+    int calls = 0;
+    model.settings.pulse = [&] { ++calls; };
+    const Outcome whole = solve(model, [](const State&) { return true; });
+    EXPECT_GT(calls, whole.cg_iterations);
+    EXPECT_GT(whole.cg_iterations, 0);
+    model.settings.pulse = [&] {
+      if (--calls == 2) throw Error("enough");
+    };
+    EXPECT_THROW(solve(model, [](const State&) { return true; }), Error);
+    EXPECT_EQ(calls, 2);
+  }
+}
+
 // Two cubes that share one edge: the second can turn about it.
 TEST(Failure, AHingeIsASingularMatrix) {
   Mesh one = box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), two = one;

@@ -123,5 +123,26 @@ TEST(EveryFactorisation, HasNothingToDoWhereAllIsFixed) {
   }
 }
 
+// Larger than what it may take, a factor is refused before it is computed: the system would end the whole program.
+TEST(Cholesky, RefusesAFactorThatDoesNotFit) {
+  constexpr int nodes = 60;
+  Chain chain(nodes, true);
+  chain.dense.diagonal().array() += 100;  // larger than the sum of the others in its row: positive definite
+  chain.copy();
+  const Mask fixed = some_fixed(nodes);
+  const auto roomy = make_cholesky(1);
+  ASSERT_EQ(roomy->factor(chain.matrix, fixed), LinearStatus::done);
+  expect_solved(chain, fixed, *roomy);
+  const auto exact = make_cholesky(1, roomy->factor_bytes()), narrow = make_cholesky(1, roomy->factor_bytes() - 1);
+  EXPECT_EQ(exact->factor(chain.matrix, fixed), LinearStatus::done);
+  EXPECT_EQ(narrow->factor(chain.matrix, fixed), LinearStatus::out_of_memory);
+  EXPECT_EQ(narrow->factor_bytes(), 0U);
+}
+
+TEST(AvailableMemory, IsSomeAndNotMoreThanAnyMachineHas) {
+  EXPECT_GT(available_memory(), std::size_t{1} << 20);
+  EXPECT_LT(available_memory(), std::size_t{1} << 50);
+}
+
 }  // namespace
 }  // namespace msml::fe

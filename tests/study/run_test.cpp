@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene with a study in, a table out.
 #include <gtest/gtest.h>
+#include <sched.h>
 
+#include <chrono>
 #include <fstream>
+#include <set>
+#include <thread>
 
 #include "msml/study/runner.hpp"
 #include "tests/commands/real_language.hpp"
@@ -12,12 +16,12 @@ namespace {
 
 /// A bar under its own weight, with a study on line 2 … of `studies`.
 std::string bar(const std::string& studies) {
-  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/></variables>
+  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/><var name="low" value="-9"/></variables>
 <workflow>
   <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" when="${kind} = tet4"/>
   <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" quadratic="true" when="${kind} = tet10"/>
   <ComputeIndicesFromBoxROI id="all" mesh="${mesh}" select="elements" box="-9 -9 -9 9 9 9"/>
-  <ComputeIndicesFromBoxROI id="base" mesh="${mesh}" select="points" box="-9 -9 -1e-6 9 9 1e-6"/>
+  <ComputeIndicesFromBoxROI id="base" mesh="${mesh}" select="points" box="-9 -9 ${low} 9 9 1e-6"/>
 </workflow>
 <scene><object id="bar">
   <mesh> <linearTet mesh="${mesh}" when="${kind} = tet4"/> <quadraticTet mesh="${mesh}" when="${kind} = tet10"/> </mesh>
@@ -37,7 +41,8 @@ struct Ran {
   Sharing sharing;
 };
 
-Ran run(const std::string& study, const tiny::Folder& folder, const Table& known = {}) {
+Ran run(const std::string& study, const tiny::Folder& folder, const Table& known = {}, const RowSink& sink = {},
+        int jobs = 1) {
   std::vector<Fault> faults;
   const Document document = parse_document(bar(study), (folder.path() / "s.xml").string(), faults);
   const Compilation compilation = compile(document, real_language());
@@ -45,9 +50,13 @@ Ran run(const std::string& study, const tiny::Folder& folder, const Table& known
   const Study& first = compilation.studies.at(0);
   const auto runs = prepare_runs(document, real_language(), {}, first);
   Ran ran;
-  const StudyOptions options{.folder = folder.path() / "out"};
+  const StudyOptions options{.folder = folder.path() / "out", .jobs = jobs};
   ran.table = run_study(
-      first, runs, real_language(), options, known, [](const Table&, std::size_t) {}, ran.sharing);
+      first, runs, real_language(), options, known,
+      [&](const Table& table, std::size_t row) {
+        if (sink) sink(table, row);
+      },
+      ran.sharing);
   return ran;
 }
 
@@ -162,6 +171,88 @@ TEST(StudyRun, TimesAreMediansBetweenTheirLowestAndHighest) {
   EXPECT_GT(ran.table.number(0, "time_total"), ran.table.number(0, "mesh_time"));
   EXPECT_EQ(ran.table.number(1, "mesh_time"), ran.table.number(0, "mesh_time")) << "the mesh was timed once, thrice";
   EXPECT_EQ(ran.sharing.computed, 3U * (3U + 2U));
+  EXPECT_EQ(ran.table.number(0, "passes"), 3);
+}
+
+TEST(StudyRun, TimesAreTakenFiveTimesUnlessTheyHaveTakenEnough) {
+  const tiny::Folder folder;
+  const std::string vary = R"( <vary variable="E" values="1000"/> <measure time="total"/></study>)";
+  EXPECT_EQ(run(R"(<study id="s">)" + vary, folder).table.number(0, "passes"), 5);
+  EXPECT_EQ(run(R"(<study id="s" enough="1e-9">)" + vary, folder).table.number(0, "passes"), 1);
+}
+
+TEST(StudyRun, SharedNodesCostARunNoTimeOfItsOwn) {
+  const tiny::Folder folder;
+  const Ran ran =
+      run(R"(<study id="s" repeat="1"> <vary variable="E" values="1000 2000"/> <measure id="all" time="total"/>
+    <measure id="own" time="own"/> <measure id="simulation" time="simulation"/></study>)",
+          folder);
+  EXPECT_EQ(ran.table.number(0, "own"), ran.table.number(0, "all")) << "the first computes all";
+  EXPECT_EQ(ran.table.number(1, "own"), ran.table.number(1, "simulation")) << "the mesh was there";
+  EXPECT_GT(ran.table.number(1, "all"), ran.table.number(1, "own"));
+}
+
+int processors() {
+  cpu_set_t some;
+  return ::sched_getaffinity(0, sizeof some, &some) == 0 ? CPU_COUNT(&some) : 0;
+}
+
+TEST(StudyRun, RunsThatAreTimedKeepToTheirProcessors) {
+  const tiny::Folder folder;
+  const int before = processors();
+  int during = 0;
+  const RowSink look = [&](const Table&, std::size_t) { during = processors(); };
+  run(R"(<study id="s"> <vary variable="E" values="1000"/> <measure time="total"/></study>)", folder, {}, look);
+  EXPECT_EQ(during, 1) << "one thread";
+  EXPECT_EQ(processors(), before);
+  run(R"(<study id="s"> <vary variable="E" values="1000"/> <measure probe="tip"/></study>)", folder, {}, look);
+  EXPECT_EQ(during, before) << "nothing is timed";
+}
+
+TEST(StudyRun, RunsThatAreNotTimedGoSideBySideWithTheSameResults) {
+  const std::string all =
+      R"(<vary variable="E" values="1000 2000 3000 4000 5000 6000"/> <vary variable="n" values="1 2"/>
+    <measure probe="tip"/>)";
+  const auto threads = [&](const std::string& measures, std::string& csv) {
+    const tiny::Folder folder;
+    std::set<std::thread::id> seen;
+    const Ran ran = run(R"(<study id="s">)" + all + measures + "</study>", folder, {},
+                        [&](const Table&, std::size_t) {
+                          seen.insert(std::this_thread::get_id());
+                          std::this_thread::sleep_for(std::chrono::milliseconds(20));  // so that one cannot do them all
+                        },
+                        3);
+    csv = to_csv(ran.table);
+    EXPECT_EQ(ran.sharing.computed, 2 * 3U + 12U) << "shared between threads too";
+    return seen.size();
+  };
+  std::string together, again;
+  EXPECT_GT(threads("", together), 1U);
+  threads("", again);
+  EXPECT_EQ(together, again);
+  const tiny::Folder folder;
+  EXPECT_EQ(to_csv(run(R"(<study id="s">)" + all + "</study>", folder).table), together);
+}
+
+TEST(StudyRun, RunsThatAreTimedGoOneByOne) {
+  const tiny::Folder folder;
+  std::set<std::thread::id> seen;
+  run(R"(<study id="s" repeat="1"> <vary variable="E" values="1000 2000 3000"/> <measure time="total"/></study>)",
+      folder, {}, [&](const Table&, std::size_t) { seen.insert(std::this_thread::get_id()); }, 3);
+  EXPECT_EQ(seen, std::set{std::this_thread::get_id()});
+}
+
+TEST(StudyRun, AReferenceThatFailsIsTriedOnce) {
+  const tiny::Folder folder;
+  // Without a base nothing holds the body.
+  const std::string rest = R"( <reference set="low=1e-7"/> <measure error="RMS"/></study>)";
+  const Ran one = run(R"(<study id="s"> <vary variable="E" values="1000"/>)" + rest, folder);
+  const Ran three = run(R"(<study id="s"> <vary variable="E" values="1000 1000 1000"/>)" + rest, folder);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(three.table.text(row, "status"), "no reference");
+    EXPECT_EQ(three.table.text(row, "reason"), one.table.text(0, "reason"));
+  }
+  EXPECT_EQ(three.sharing.computed, one.sharing.computed);
 }
 
 TEST(StudyRun, ARunBeyondItsLimitIsEndedAndSaysSo) {

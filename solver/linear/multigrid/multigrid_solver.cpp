@@ -19,7 +19,8 @@ constexpr double worth_a_set_up = 10;  // iterations that cost as much as settin
 /// matrix of a body that turns without straining is met exactly.
 class MultigridSolver final : public LinearSystem {
  public:
-  explicit MultigridSolver(const NodeGeometry& geometry) : geometry_(geometry), grids_(geometry) {}
+  MultigridSolver(const NodeGeometry& geometry, std::function<void()> pulse)
+      : geometry_(geometry), grids_(geometry), pulse_(std::move(pulse)) {}
 
   void place(const Vector& displacement) override { displacement_ = displacement; }
 
@@ -102,6 +103,7 @@ class MultigridSolver final : public LinearSystem {
 
   /// z = R V R^T r with the rotations R of the nodes, in single precision on numbers of order one.
   void precondition(const Vector& r, double size, Vector& z) {
+    if (pulse_) pulse_();
     const auto count = static_cast<std::size_t>(r.size());
     single_r_.resize(count + 8, 0.0f);
     single_z_.resize(count + 8, 0.0f);
@@ -129,6 +131,7 @@ class MultigridSolver final : public LinearSystem {
 
   NodeGeometry geometry_;
   Multigrid grids_;
+  std::function<void()> pulse_;
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   bool usable_ = false, fresh_ = false, stale_ = false;
@@ -142,8 +145,8 @@ class MultigridSolver final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry) {
-  return std::make_unique<MultigridSolver>(geometry);
+std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry, std::function<void()> pulse) {
+  return std::make_unique<MultigridSolver>(geometry, std::move(pulse));
 }
 
 }  // namespace msml::fe
