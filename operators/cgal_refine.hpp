@@ -99,6 +99,7 @@ void refine_and_improve(C3t3& c3t3, const Domain& domain, const MeshCriteria& me
                         const Announcer& announce) {
   namespace p = CGAL::parameters;
   constexpr int smoothing_sweeps = 100;
+  constexpr double patience = 120;  // seconds: on few points between protected edges exudation can go round for ever
   announce("refining");
   CGAL::refine_mesh_3(c3t3, domain, mesh_criteria, p::no_reset_c3t3(), p::no_odt(), p::no_lloyd(), p::no_perturb(),
                       p::no_exude());
@@ -112,11 +113,11 @@ void refine_and_improve(C3t3& c3t3, const Domain& domain, const MeshCriteria& me
   }
   if (s.perturb) {
     announce("perturbing");
-    CGAL::perturb_mesh_3(c3t3, domain);
+    CGAL::perturb_mesh_3(c3t3, domain, p::time_limit = patience);
   }
   if (s.exude) {
     announce("exuding");
-    CGAL::exude_mesh_3(c3t3);
+    CGAL::exude_mesh_3(c3t3, p::time_limit = patience);
   }
 }
 

@@ -10,6 +10,7 @@
 #include "operators/simulate/check_report.hpp"
 #include "operators/simulate/examine_scene.hpp"
 #include "operators/simulate/series_writer.hpp"
+#include "solver/unknowns.hpp"
 
 namespace msml::operators {
 
@@ -96,7 +97,14 @@ void simulate_object(Context& context) {
   Writers writers = simulation::make_writers(simulation, context.output_folder(), context.reporter());
   const fe::Measurer measurer(simulation.model);
   simulation::RunTimes times;
-  const fe::Outcome outcome = run(simulation, measurer, writers, context.reporter(), progress, times);
+  const fe::Outcome outcome = [&] {
+    try {
+      return run(simulation, measurer, writers, context.reporter(), progress, times);
+    } catch (const Error&) {  // ended from outside: how large the problem is, is known all the same
+      context.reporter().record("size", fmt::format("{{\"unknowns\": {}}}", fe::unknowns(simulation.model, 0)));
+      throw;
+    }
+  }();
   StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
   for (const auto& writer : writers) writer->finish(outcome.state, fields);
   finish(simulation, outcome, times, context.output_folder(), context.reporter());

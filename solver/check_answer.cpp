@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "solver/measure.hpp"
+#include "solver/unknowns.hpp"
 
 namespace msml::fe {
 namespace {
@@ -105,6 +106,8 @@ long count_unknowns(const Model& model, const Numbering& numbering, int step) {
   for (const Mat3& P : supports.slides.projection) held += std::lround(3 - P.trace());
   return std::count(supports.fixed.begin(), supports.fixed.end(), 0) - held;
 }
+
+long unknowns(const Model& model, int step) { return count_unknowns(model, make_elements(model)->numbering(), step); }
 
 double euler_loss_per_cycle(double period, double dt) {
   const double w = 2 * std::numbers::pi * dt / period;

@@ -225,7 +225,8 @@ std::optional<double> unknowns(const Finished& finished) {
   const auto edge = find_output(finished.scene.graph, "");
   if (!edge) return std::nullopt;
   const auto& facts = finished.result.nodes[at(edge->node)].facts;
-  const auto found = facts.find("check");
+  auto found = facts.find("check");
+  if (found == facts.end()) found = facts.find("size");
   if (found == facts.end()) return std::nullopt;
   const Json count = Json::parse(found->second, nullptr, false).value("unknowns", Json());
   return count.is_number() ? std::optional(count.get<double>()) : std::nullopt;

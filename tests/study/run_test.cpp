@@ -261,6 +261,7 @@ TEST(StudyRun, ARunBeyondItsLimitIsEndedAndSaysSo) {
       run(R"(<study id="s" limit="1e-6"> <vary variable="E" values="1000"/> <measure probe="tip"/></study>)", folder);
   EXPECT_EQ(ran.table.text(0, "status"), "limit");
   EXPECT_NE(ran.table.text(0, "reason").find("ended after its limit of 1e-06 s"), std::string::npos);
+  EXPECT_EQ(ran.table.number(0, "unknowns"), 3 * (8 - 4)) << "a chart marks it at its size";
 }
 
 }  // namespace
