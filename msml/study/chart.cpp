@@ -36,6 +36,7 @@ class Drawing {
     for (const Curve& curve : curves_)
       for (const Point& point : curve.points) {
         xs.push_back(point.x), ys.push_back(point.y);
+        if (chart_.y == share_column) continue;
         for (const char* end : {"_low", "_high"}) {
           add(xs, point.row, chart.x + end, chart_.axes.log_x);
           add(ys, point.row, chart.y + end, chart_.axes.log_y);
@@ -129,7 +130,10 @@ class Drawing {
     return std::min<std::size_t>(width * 9 / 10, 32);  // letters are narrower than gnuplot takes them to be
   }
 
-  bool has_bars(const std::string& column) const { return table_.find(column + "_low") >= 0; }
+  /// Of a distribution the spread is the message, not that of each time.
+  bool has_bars(const std::string& column) const {
+    return chart_.y != share_column && table_.find(column + "_low") >= 0;
+  }
 
   std::string data(std::size_t i) const {
     std::string text = fmt::format("$curve{} << EOD\n", i);
@@ -159,7 +163,7 @@ class Drawing {
                               colour);
   }
 
-  /// Names at the ends of the curves, moved apart where they would overlap.
+  /// Names on the right, moved apart where they would overlap, with a thin line to a curve that ends inside.
   std::string labels() const {
     if (curves_.size() < 2) return {};
     constexpr double apart = 0.045;
@@ -176,11 +180,15 @@ class Drawing {
     std::string text;
     for (const auto& [y, i] : places) {
       const Point& last = curves_[i].points.back();
-      const double bar = table_.number(last.row, chart_.x + "_high");
+      const double bar = has_bars(chart_.x) ? table_.number(last.row, chart_.x + "_high") : last.x;
       const double end = x_.share(std::isfinite(bar) ? std::max(bar, last.x) : last.x);
-      text += fmt::format(
-          "set label {} at graph {:.4f}, graph {:.4f} left offset 0.8,0 noenhanced boxed front tc rgb \"{}\"\n",
-          quoted(curves_[i].name), std::max(end, 0.0), y, colours[i % colours.size()]);
+      const char* colour = colours[i % colours.size()];
+      if (end < 0.9)
+        text +=
+            fmt::format("set arrow from graph {:.4f},{:.4f} to graph 1.01,{:.4f} nohead dt 3 lw 0.8 lc rgb \"{}\"\n",
+                        end + 0.015, y_.share(last.y), y, colour);
+      text += fmt::format("set label {} at graph 1.015, graph {:.4f} left noenhanced tc rgb \"{}\"\n",
+                          quoted(curves_[i].name), y, colour);
     }
     return text;
   }

@@ -103,7 +103,9 @@ class Costs {
   void ratios() {
     const auto& group = subject_.group;
     if (group.empty()) return;
-    std::vector<std::string> costs{"unknowns"};
+    std::vector<std::string> costs;
+    const auto all = curves(table_, "unknowns", subject_.error, {}, true);
+    if (!all.empty() && all[0].points.front().x < all[0].points.back().x) costs.emplace_back("unknowns");
     if (time()) costs.push_back(time()->id);
     Cells cells{{"error", "method"}};
     for (const std::string& cost : costs) cells.front().insert(cells.front().end(), {cost, "to the best"});

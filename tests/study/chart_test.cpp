@@ -143,6 +143,39 @@ TEST(Page, SaysWhatAccuracyCosts) {
   EXPECT_THAT(page, HasSubstr("| tet10 | 4 | not converged | it stalled |"));
 }
 
+// Errors that grow with an amount: 1 % is passed at 0.1, halfway in the logarithms; 10 % by no run, 0.1 % by all.
+TEST(Page, SaysWhereErrorsPassRoundNumbers) {
+  const Table table{{"kind", "n", "status", "error", "time", "reason", "key"},
+                    {{"small", "0.01", "done", "0.002", "1", "", "k"},
+                     {"small", "1", "done", "0.05", "1", "", "k"},
+                     {"exact", "0.01", "done", "0.002", "1", "", "k"},
+                     {"exact", "1", "done", "0.0005", "1", "", "k"}}};
+  Study along = study();
+  along.charts[0].x = "n";
+  const std::string page = to_markdown(make_page(along, table, "About."));
+  EXPECT_THAT(page, HasSubstr("| error | n | small | below | below | 0.1 | above |"));
+  EXPECT_THAT(page, HasSubstr("| error | n | exact | below | below | below | 0.1 |"));
+}
+
+// All runs of a study of time steps have the same unknowns: nothing to compare there.
+TEST(Page, ComparesOnlyCostsThatDiffer) {
+  Table table = convergence();
+  EXPECT_THAT(to_markdown(make_page(study(), table, "")),
+              HasSubstr("| error | method | unknowns | to the best | time |"));
+  for (auto& row : table.rows) row[3] = "270";
+  EXPECT_THAT(to_markdown(make_page(study(), table, "")), HasSubstr("| error | method | time | to the best |"));
+}
+
+TEST(Page, FitsTheFinerHalfToo) {
+  Table table{{"kind", "n", "status", "error", "time", "reason", "key"}, {}};
+  // Order 1 on the coarse half, 2 on the finer one.
+  for (const auto& [n, error] : {std::pair{"1", "1"}, {"2", "0.5"}, {"4", "0.25"}, {"8", "0.0625"}, {"16", "0.015625"}})
+    table.rows.push_back({"tet4", n, "done", error, "1", "", "k"});
+  Study along = study();
+  along.charts[0].x = "n";
+  EXPECT_THAT(to_markdown(make_page(along, table, "")), HasSubstr("| 5 | -2.00 | ± 0.00 | 3 |"));
+}
+
 TEST(Page, IsOneFileOfHtml) {
   const tiny::Folder folder;
   folder.add("c.svg", "<?xml?><svg>drawn</svg>");
