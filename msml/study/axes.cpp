@@ -76,8 +76,8 @@ std::string chart_head(const Chart& chart, const Frame& frame, const ChartStyle&
   if (frame.y.log) text += "set logscale y\n";
   text += tics("x", frame.x) + tics("y", frame.y);
   return text +
-         fmt::format("set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:{:.6g}]\n", frame.x.low, frame.x.high, frame.y.low,
-                     frame.y.high) +
+         fmt::format("set xrange [{:.12g}:{:.12g}]\nset yrange [{:.12g}:{:.12g}]\n", frame.x.low, frame.x.high,
+                     frame.y.low, frame.y.high) +
          fmt::format(
              "set grid xtics ytics lt 1 dt 1 lw 1 lc rgb \"#D8D8D8\"\nset border 3\nset tics nomirror out\nunset "
              "key\n"

@@ -185,7 +185,7 @@ class Drawing {
       const char* colour = colours[i % colours.size()];
       if (end < 0.9)
         text +=
-            fmt::format("set arrow from graph {:.4f},{:.4f} to graph 1.01,{:.4f} nohead dt 3 lw 0.8 lc rgb \"{}\"\n",
+            fmt::format("set arrow from graph {:.4f},{:.4f} to graph 1.01,{:.4f} nohead dt 3 lw 1.2 lc rgb \"{}\"\n",
                         end + 0.015, y_.share(last.y), y, colour);
       text += fmt::format("set label {} at graph 1.015, graph {:.4f} left noenhanced tc rgb \"{}\"\n",
                           quoted(curves_[i].name), y, colour);
