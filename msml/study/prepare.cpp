@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "msml/study/expand.hpp"
@@ -51,6 +52,15 @@ std::shared_ptr<const Prepared> prepared(Graph graph, const std::vector<int>& no
   return found;
 }
 
+/// Tells one build of the program from another: what an older one found and timed does not count. "" where unknown.
+std::string this_program() {
+  const std::filesystem::path self = "/proc/self/exe";  // Linux, proc(5)
+  std::error_code code;
+  const auto size = std::filesystem::file_size(self, code);
+  const auto time = std::filesystem::last_write_time(self, code).time_since_epoch().count();
+  return code ? "" : fmt::format("{} {}", size, time);
+}
+
 class Preparation {
  public:
   Preparation(const Document& document, const Registry& registry, const CompileOptions& options, const Study& study)
@@ -59,7 +69,8 @@ class Preparation {
   StudyRun run(const Settings& settings) {
     StudyRun run{.settings = settings, .study = study_, .scene = {}, .reference = {}, .reason = {}, .key = {}};
     Compilation compilation = compiled(settings);
-    std::string key = fmt::format("{} {} {} {}", MSML_VERSION, study_.repetitions(), study_.enough, study_.limit);
+    std::string key =
+        fmt::format("{} {} {} {} {}", MSML_VERSION, program_, study_.repetitions(), study_.enough, study_.limit);
     for (const auto& [name, value] : settings) key += fmt::format(" {}={}", name, value);
     if (const std::string fault = first_fault(compilation); !fault.empty()) {
       run.reason = fault;
@@ -136,6 +147,7 @@ class Preparation {
   const Registry& registry_;
   const CompileOptions& options_;
   const Study& study_;
+  const std::string program_ = this_program();
   std::map<Settings, std::shared_ptr<const Prepared>> references_;
 };
 
