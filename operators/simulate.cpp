@@ -61,6 +61,7 @@ fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writ
     StateFields fields(simulation.model, simulation.body, measurer, state);
     for (const auto& writer : writers)
       if (writer->wants(state)) writer->write(state, fields);
+    ++times.states;
     progress = progress_at(simulation.model, state);
     reporter.progress(progress.share, progress.words);
     times.output += since(arrived);
@@ -105,8 +106,11 @@ void simulate_object(Context& context) {
       throw;
     }
   }();
+  // Where the start has no forces, there is no state to write.
+  const bool stateless = times.states == 0 && outcome.stop != fe::Stop::unstable_step;
   StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
-  for (const auto& writer : writers) writer->finish(outcome.state, fields);
+  for (const auto& writer : writers)
+    if (!stateless) writer->finish(outcome.state, fields);
   finish(simulation, outcome, times, context.output_folder(), context.reporter());
   if (outcome.stop != fe::Stop::converged)
     throw Error(outcome.diagnosis, simulation.where,

@@ -6,6 +6,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "msml/core/mesh.hpp"
@@ -51,7 +53,17 @@ using VectorFunction = std::function<Vec3(const Vec3& X, double t)>;
 using ScalarFunction = std::function<double(const Vec3& X, double t)>;
 
 /// A factor in time: a load curve.
-using TimeFunction = std::function<double(double t)>;
+struct TimeFunction {
+  std::function<double(double t)> value;
+  std::vector<double> kinks;  ///< times where it turns, which adaptive steps meet
+
+  TimeFunction() = default;
+  template <class Callable>
+  requires std::is_invocable_r_v<double, Callable, double> TimeFunction(Callable f, std::vector<double> times = {})
+      : value(std::move(f)), kinks(std::move(times)) {}
+  double operator()(double t) const { return value(t); }
+  explicit operator bool() const { return static_cast<bool>(value); }
+};
 
 enum class Ramp { linear, step };
 

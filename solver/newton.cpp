@@ -3,25 +3,12 @@
 #include "solver/newton.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
-#include "solver/linear/gmres.hpp"
+#include "solver/stopwatch.hpp"
 
 namespace msml::fe {
 namespace {
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& total) : total_(total) {}
-  ~Stopwatch() { total_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& total_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 Stop stop_of(LinearStatus status) {
   switch (status) {
@@ -37,46 +24,6 @@ Stop stop_of(LinearStatus status) {
       break;
   }
   return Stop::converged;
-}
-
-constexpr double shift = 1e-8;  // far above round-off, far below the softest motion that strains the body
-
-void shift_diagonal(BlockMatrix& A) {
-  for (const int p : A.pattern->diagonal)
-    for (std::size_t i = 0; i < 3; ++i) A.values[9 * static_cast<std::size_t>(p) + 4 * i] *= 1 + shift;
-}
-
-/// Adds a thousandth of the mean diagonal to each diagonal entry.
-void lift_diagonal(BlockMatrix& A) {
-  double sum = 0;
-  const auto entry = [&](int p, std::size_t i) -> double& { return A.values[9 * static_cast<std::size_t>(p) + 4 * i]; };
-  for (const int p : A.pattern->diagonal)
-    for (std::size_t i = 0; i < 3; ++i) sum += entry(p, i);
-  const double lift = 1e-3 * sum / (3.0 * static_cast<double>(A.pattern->diagonal.size()));
-  for (const int p : A.pattern->diagonal)
-    for (std::size_t i = 0; i < 3; ++i) entry(p, i) += lift;
-}
-
-/// A x = b with `shifted` factorised instead of the singular A: refines while that helps.
-LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const Mask& fixed, const Vector& b,
-                            double tolerance, Vector& x) {
-  Vector rest = b, correction, product;
-  x = Vector::Zero(b.size());
-  double before = free_norm(b, fixed);
-  const double target = tolerance * before;
-  for (int round = 0; round < 6; ++round) {
-    const LinearStatus status = shifted.solve(rest, tolerance, correction);
-    if (status != LinearStatus::done) return status;
-    multiply(A, Vector(x + correction), product);
-    const Vector left = b - product;
-    const double now = free_norm(left, fixed);
-    if (round > 0 && !(now < before)) break;
-    x += correction;
-    rest = left;
-    before = now;
-    if (now <= target) break;
-  }
-  return LinearStatus::done;
 }
 
 }  // namespace
@@ -110,11 +57,23 @@ void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bo
                              increment.damping_matrix, forces_);
 }
 
+namespace {
+
+/// The set of springs that act: internal forces and tangent hold theirs.
+const LoadSet* springs_of(const ScaledLoads& loads) {
+  for (const ActingLoads& acting : loads)
+    if (!acting.leaving && !acting.set->springs.empty()) return acting.set;
+  return nullptr;
+}
+
+}  // namespace
+
 void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   const Stopwatch watch(seconds_assembly_);
   linear_->place(u);
   equations_.evaluate(u, loads, want_, forces_, &tangent_, followers_.get());
   tangent_current_ = true;
+  springs_in_tangent_ = springs_of(loads);
 }
 
 void Newton::look(const Vector& u, const ScaledLoads& loads) {
@@ -172,83 +131,13 @@ Vector Newton::free_residual(const Increment& increment) const {
   return residual;
 }
 
-LinearStatus Newton::factor(const Increment& increment) {
-  const Kinematics& motion = increment.motion;
-  const Settings& settings = model_.settings;
-  const bool slides = increment.slides && !increment.slides->empty();
-  factored_ = &tangent_;
-  if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
-    return linear_->factor(tangent_, increment.fixed);
-  factored_ = &effective_;
-  if (motion.dynamic()) {
-    // Divided by force_share, so that the tangent is there as it is.
-    const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
-    effective_.assign(tangent_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
-    if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
-  } else {
-    effective_.assign(tangent_, 0, equations_.mass());
-  }
-  if (rigid_free_) shift_diagonal(effective_);
-  if (lifted_) lift_diagonal(effective_);
-  if (increment.slides) increment.slides->project(effective_);
-  return linear_->factor(effective_, increment.fixed);
-}
-
-double Newton::linear_tolerance(const Vector& right, const Mask& fixed) const {
-  const double asked = model_.settings.linear_tolerance;
-  if (equations_.small_strain() || model_.settings.newton_iterations == 1 || !linear_->iterative()) return asked;
-  const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
-  return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
-}
-
-LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
-  const double tolerance = linear_tolerance(right, increment.fixed);
-  if (rigid_free_ && !followers_ && !(increment.slides && !increment.slides->empty()))
-    return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
-  if (!followers_) return linear_->solve(right, tolerance, step);
-  Vector extra;
-  const LinearMap whole = [&](const Vector& x, Vector& y) {
-    multiply(effective_, x, y);
-    multiply(*followers_, x, extra);
-    if (increment.slides) increment.slides->project(extra);
-    y += extra;
-  };
-  const LinearStatus status = solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
-  if (status == LinearStatus::done || status == LinearStatus::out_of_memory) return status;
-  // Far from the symmetric part, for instance where a pressure blows a thin wall up, only a factorisation of all helps.
-  BlockMatrix all = effective_;
-  add(all, 1, *followers_);
-  if (increment.slides) increment.slides->project(all);
-  if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads);
-  const LinearStatus factored = unsymmetric_->factor(all, increment.fixed);
-  return factored == LinearStatus::done ? unsymmetric_->solve(right, tolerance, step) : factored;
-}
-
-LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step) {
-  const Stopwatch watch(seconds_linear_);
-  const LinearStatus status = factor(increment);
-  if (status != LinearStatus::done) return status;
-  Vector right = residual / increment.motion.force_share, product;
-  if (jump.size() > 0) {
-    multiply(tangent_, jump, product);
-    right -= product;
-    if (followers_) {
-      multiply(*followers_, jump, product);
-      right -= product;
-    }
-  }
-  if (increment.slides) increment.slides->project(right);
-  ++solves_;
-  return solve(increment, right, step);
-}
-
 LinearStatus Newton::direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                                Vector& step) {
   const Definiteness choice = model_.settings.definiteness;
   if (choice != Definiteness::always && !insist_definite_) {
     const LinearStatus status = attempt(increment, jump, residual, step);
     // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
-    indefinite_ = indefinite(status);
+    indefinite_ = whole_taken_ ? unsymmetric_->negative_determinant() : indefinite(status);
     const bool mixed = equations_.numbering().mixed();
     if (!indefinite_ || choice == Definiteness::never || mixed) return status;
   }
@@ -289,14 +178,12 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
     // The last factorisation of the exact tangent may be of a state far from this one.
     evaluate(increment, result.u, want_, true);
     const Stopwatch watch(seconds_linear_);
-    const bool slides = increment.slides && !increment.slides->empty();
-    if (slides) {
-      effective_.assign(tangent_, 0, equations_.mass());
-      increment.slides->project(effective_);
-    }
-    LinearStatus status = linear_->factor(slides ? effective_ : tangent_, increment.fixed);
+    LinearStatus status = factor(increment);
     if (status == LinearStatus::done) status = linear_->probe();
     indefinite_ = indefinite(status);
+    // Loads that follow need not be the gradient of anything: what is left to look at is the determinant.
+    if (indefinite_ && followers_ && factor_whole(increment) == LinearStatus::done)
+      indefinite_ = unsymmetric_->negative_determinant();
   }
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }
@@ -319,7 +206,7 @@ void Newton::take_jump(const Increment& increment, const Vector& jump, const Vec
 IncrementResult Newton::begin(const Increment& increment, const Vector& jump) {
   IncrementResult result;
   Vector& u = result.u = increment.start;
-  if (tangent_current_)
+  if (tangent_current_ && springs_in_tangent_ == springs_of(increment.loads))
     equations_.evaluate_loads(u, increment.loads, forces_, followers_.get());
   else
     prepare(u, increment.loads);

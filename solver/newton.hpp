@@ -85,6 +85,8 @@ class Newton {
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025).
   double linear_tolerance(const Vector& right, const Mask& fixed) const;
   LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
+  /// By a factorisation of the tangent with the followers' part, symmetric or not.
+  LinearStatus factor_whole(const Increment& increment);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
                          Vector& step);
   Vector free_residual(const Increment& increment) const;
@@ -109,12 +111,14 @@ class Newton {
   std::unique_ptr<LinearSystem> unsymmetric_;  ///< takes over where follower pressure makes the iteration fail
   BlockMatrix tangent_, effective_;            ///< effective_: with inertia, damping and what else makes it solvable
   const BlockMatrix* factored_ = &tangent_;    ///< the one of both that was factorised last
+  std::unique_ptr<BlockMatrix> whole_;         ///< effective_ and followers_; null until needed
   std::unique_ptr<BlockMatrix> followers_;     ///< stiffness of the follower pressure; null without
   Forces forces_;
   Want want_;
-  bool tangent_current_ = false;  ///< tangent_ belongs to the displacement that increments start from
-  bool lifted_ = false;           ///< the diagonal of the definite tangent is raised
-  bool searching_ = true;         ///< the line search is on
+  bool tangent_current_ = false;                 ///< tangent_ belongs to the displacement that increments start from
+  const LoadSet* springs_in_tangent_ = nullptr;  ///< the set whose springs it holds
+  bool lifted_ = false;                          ///< the diagonal of the definite tangent is raised
+  bool searching_ = true;                        ///< the line search is on
   bool energetic_ = true;         ///< forces are derivatives of an energy, which the line search looks at
   bool barrier_ = false;          ///< a law does not survive inversion
   bool rigid_free_ = false;       ///< the matrix is singular, as nothing holds the body
@@ -122,6 +126,7 @@ class Newton {
   double last_step_ = 0;  ///< largest entry of the last step before the line search; infinite without the exact tangent
   std::vector<char> survives_;   ///< of each cell: its law survives inversion
   bool definite_taken_ = false;  ///< the last step came from the semidefinite tangent
+  bool whole_taken_ = false;     ///< the last step came from factor_whole()
   bool indefinite_ = false;      ///< the last exact tangent was not that of a stable equilibrium
   double round_off_ = 0;         ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;

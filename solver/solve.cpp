@@ -30,6 +30,18 @@ void integrate(Run& run) {
   }
 }
 
+/// A static answer that is none: with newtonIterations = 1 the program takes what one linear solve gives.
+std::string warning_of_imbalance(const Model& model, const Outcome& outcome) {
+  const bool settles =
+      model.settings.integrator == Integrator::static_ || model.settings.integrator == Integrator::quasi_static;
+  const double allowed = std::max(1e-4, 100 * model.settings.tolerance);
+  if (!settles || outcome.stop != Stop::converged || !(outcome.check.residual > allowed)) return "";
+  return fmt::format(
+      "the forces are out of balance by {:.3g} of their size: this is not an equilibrium. Allow more newtonIterations "
+      "than {}, or apply the loads in more loadSteps",
+      outcome.check.residual, model.settings.newton_iterations);
+}
+
 Outcome run_model(const Model& model, const Observer& observer) {
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
@@ -52,7 +64,8 @@ Outcome run_model(const Model& model, const Observer& observer) {
                     run.untangled));
   outcome.state = run.state();
   outcome.check = check_answer(run);
-  for (const std::string& warning : {warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})
+  for (const std::string& warning :
+       {warning_of_imbalance(model, outcome), warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})
     if (!warning.empty()) outcome.warnings.push_back(warning);
   return outcome;
 }

@@ -62,8 +62,11 @@ double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mas
   return value;
 }
 
-std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
-                                         const Mask& fixed) {
+namespace {
+
+/// Eigenvalues of the motion (x, x'); nothing where there are too many.
+std::optional<Eigen::VectorXcd> motion_eigenvalues(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                                   const Mask& fixed) {
   const LowerTriangle lower = lower_triangle(*K.pattern, fixed);
   const int n = lower.size();
   if (n > most_dense) return std::nullopt;
@@ -83,12 +86,30 @@ std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix
       motion(n + row, n + column) = -damping[p] / mass(row);
       motion(n + column, n + row) = -damping[p] / mass(column);
     }
-  const Eigen::VectorXcd values = Eigen::EigenSolver<Eigen::MatrixXd>(motion, false).eigenvalues();
+  if (n == 0) return Eigen::VectorXcd();
+  return Eigen::VectorXcd(Eigen::EigenSolver<Eigen::MatrixXd>(motion, false).eigenvalues());
+}
+
+}  // namespace
+
+std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                         const Mask& fixed) {
+  const auto values = motion_eigenvalues(K, C, M, fixed);
+  if (!values) return std::nullopt;
   double limit = std::numeric_limits<double>::infinity();
-  const double free = 1e-8 * (n > 0 ? values.cwiseAbs().maxCoeff() : 0);
-  for (const std::complex<double>& l : values)
+  const double free = 1e-8 * (values->size() > 0 ? values->cwiseAbs().maxCoeff() : 0);
+  for (const std::complex<double>& l : *values)
     if (std::abs(l) > free) limit = std::min(limit, std::max(0.0, -2 * l.real() / std::norm(l)));
   return limit;
+}
+
+std::optional<double> forward_euler_growth(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                           const Mask& fixed, double dt) {
+  const auto values = motion_eigenvalues(K, C, M, fixed);
+  if (!values) return std::nullopt;
+  double growth = 1;
+  for (const std::complex<double>& l : *values) growth = std::max(growth, std::abs(1.0 + dt * l));
+  return growth;
 }
 
 double stable_step(Integrator integrator, double largest, double alpha, double beta) {

@@ -25,6 +25,10 @@ double stable_step(Integrator integrator, double largest, double alpha, double b
 /// freely. Nothing with more than `most_dense` free unknowns.
 std::optional<double> forward_euler_step(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
                                          const Mask& fixed);
+/// The factor by which forward Euler lets the fastest growing motion grow in one step of dt: the largest |1 + dt l|.
+/// Nothing with more than `most_dense` free unknowns.
+std::optional<double> forward_euler_growth(const BlockMatrix& K, const BlockMatrix& C, const ScalarMatrix& M,
+                                           const Mask& fixed, double dt);
 inline constexpr int most_dense = 150;
 
 }  // namespace msml::fe

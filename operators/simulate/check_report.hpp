@@ -13,6 +13,7 @@ namespace msml::simulation {
 struct RunTimes {
   double steps = 0;   ///< all steps with their assembly and linear systems, without output
   double output = 0;  ///< what happens to the states: fields, files
+  int states = 0;     ///< that the solver passed on
 };
 
 /// Warnings that follow from the model and the check, each a sentence that says what to change in the scene.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "msml/core/error.hpp"
 #include "solver/integrators/stepper.hpp"
@@ -21,7 +22,20 @@ struct Arc {
   std::unique_ptr<LinearSystem> linear;
   BlockMatrix matrix;
   Vector last = {};  ///< displacement increment of the step before; empty at first
-  double length = 0;
+  double length = 0, longest = 0;
+
+  /// The length that leads to the bounds of the load and of the displacement, as far as the tangent foresees them.
+  double reach(double lambda, double per_length, const Vector& t) const {
+    const ArcLength& bounds = run.model.settings.arc_length;
+    const double load = (bounds.load - (per_length > 0 ? lambda : -lambda)) / std::abs(per_length);
+    double length_to = load > 0 ? 1.0001 * load : std::numeric_limits<double>::infinity();
+    for (Eigen::Index k = 0; k < t.size() && std::isfinite(bounds.displacement); k += 3) {
+      const Vec3 u = run.now.u.segment<3>(k), d = per_length * t.segment<3>(k);
+      const double a = d.squaredNorm(), b = u.dot(d), c = u.squaredNorm() - bounds.displacement * bounds.displacement;
+      if (a > 0 && c < 0) length_to = std::min(length_to, 1.0001 * (std::sqrt(b * b - a * c) - b) / a);
+    }
+    return length_to;
+  }
 
   ScaledLoads unit_loads() const { return path.loads(1); }
 
@@ -73,10 +87,11 @@ struct Arc {
     run.newton.prepare(result.u, path.loads(lambda));
     Vector t, r;
     if (!directions(result.u, {}, t, r)) return result.stop = Stop::singular, result;
-    if (length == 0) length = std::sqrt(dot(t, t)) / run.model.settings.load_steps;
     const double size = std::sqrt(dot(t, t));
     const double sign = last.size() > 0 && dot(last, t) < 0 ? -1 : 1;
     if (!(size > 0)) return result.stop = Stop::singular, result;
+    if (length == 0) length = size / run.model.settings.load_steps, longest = 10 * length;
+    length = std::min({length, longest, reach(lambda, sign / size, t)});
     lambda += sign * length / size;
     Vector way = sign * length / size * t;
     for (int iteration = 0; iteration < run.model.settings.newton_iterations; ++iteration) {

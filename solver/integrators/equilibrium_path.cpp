@@ -52,11 +52,13 @@ EquilibriumPath begin_path(Run& run, int step) {
 bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   const Motion before = run.now;
   const bool adaptive = run.model.settings.adaptive_step;
+  const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
   const double smallest = (to - from) / (adaptive ? 4096 : 64);
   double piece = to - from;
   if (adaptive && run.piece > 0) piece = std::clamp(run.piece / path.duration, smallest, piece);
   while (from < to) {
-    const double share = std::min(to, from + piece) > to - 1e-12 ? to : from + piece;
+    const double stop = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
+    const double share = from + piece > stop - 1e-12 ? stop : from + piece;
     const IncrementResult result = try_piece(run, path, from, share);
     if (result.stop == Stop::converged) {
       take(run, path, share, result.u);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "solver/integrators/stepper.hpp"
 #include "solver/stable_step.hpp"
@@ -10,12 +11,14 @@
 namespace msml::fe {
 namespace {
 
-constexpr int watch_every = 100;  // time steps between estimates of the stable one, where the stiffness may change
+constexpr double most_growth = 2;  // of an undamped motion over the rest of a run
+constexpr int watch_every = 100;   // time steps between estimates of the stable one, where the stiffness may change
 
 struct Explicit {
   Run& run;
   BlockMatrix C;        ///< damping beside alpha M
   bool damped = false;  ///< there is such damping
+  bool warned = false;  ///< of motions that grow
 
   /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given.
   void balance(const Vector& u, const Vector& damping_velocity, const ScaledLoads& loads, const Supports& supports,
@@ -43,8 +46,24 @@ struct Explicit {
     return stable_step(s.integrator, largest, s.damping_mass + largest_eigenvalue(C, run.equations.mass(), fixed), 0);
   }
 
-  /// False if dt is too large for the present stiffness and the scene does not allow that.
-  bool stable(const Step& step, const Mask& fixed, const ScaledLoads& loads) {
+  /// Forward Euler lets every motion grow that nothing damps, such as a pendulum's swing beside a damped spring: that
+  /// does no harm where it is little in the steps that are left.
+  bool grows_little(const BlockMatrix& K, const Mask& fixed, double dt, int left) {
+    if (run.model.settings.integrator != Integrator::forward_euler || !run.equations.has_dampers()) return false;
+    const auto growth = forward_euler_growth(K, C, run.equations.mass(), fixed, dt);
+    const double factor = growth ? std::pow(*growth, left) : std::numeric_limits<double>::infinity();
+    if (!(factor <= most_growth)) return false;
+    if (!warned)
+      run.outcome.warnings.push_back(
+          fmt::format("forwardEuler: a motion that nothing damps grows, by up to {:.3g} to the end of the step; take "
+                      "a smaller dt or symplecticEuler",
+                      factor));
+    return warned = true;
+  }
+
+  /// False if dt is too large for the present stiffness and the scene does not allow that. `left`: steps to come, of a
+  /// run that is under way; 0 before it.
+  bool stable(const Step& step, const Mask& fixed, const ScaledLoads& loads, int left) {
     const Settings& settings = run.model.settings;
     if (settings.allow_unstable) return true;
     BlockMatrix K(C.pattern);
@@ -52,7 +71,7 @@ struct Explicit {
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
     const double limit = limit_of(K, largest, fixed);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
-    if (step.dt <= limit * (1 + 1e-6)) return true;
+    if (step.dt <= limit * (1 + 1e-6) || (left > 0 && grows_little(K, fixed, step.dt, left))) return true;
     refuse(step, limit, std::sqrt(largest));
     return false;
   }
@@ -139,14 +158,17 @@ void run_explicit(Run& run) {
     run.now.a.setZero();
     method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
     run.set_reactions(run.newton.forces().residual(), supports);
+    if (s == 0 && !run.sound_start()) return;
     run.mark();
-    if (!method.stable(step, supports.fixed, loads)) return;
+    if (!method.stable(step, supports.fixed, loads, 0)) return;
     if (s == 0 && !run.accept()) return;
     const double start = run.now.time;
     for (int k = 1; k <= step.count; ++k) {
       if (!method.advance(step, supports, k, loads, start + k * step.dt)) return;
       if (!run.accept()) return;
-      if (k % watch_every == 0 && !run.equations.small_strain() && !method.stable(step, supports.fixed, loads)) return;
+      if (k % watch_every == 0 && !run.equations.small_strain() &&
+          !method.stable(step, supports.fixed, loads, step.count - k + 1))
+        return;
     }
   }
 }

@@ -120,8 +120,9 @@ bool advance(Stage& stage, double target) {
   const double dt = stage.step.dt, smallest = dt / 4096;
   double h = settings.adaptive_step && run.piece > 0 ? std::clamp(run.piece, smallest, dt) : dt;
   while (run.now.time < target) {
-    const bool last = run.now.time + 1.0001 * h >= target;
-    const double time = last ? target : run.now.time + h, taken = time - run.now.time;
+    const double stop = settings.adaptive_step ? next_stop(stage.step, run.now.time, target) : target;
+    const bool last = run.now.time + 1.0001 * h >= stop;
+    const double time = last ? stop : run.now.time + h, taken = time - run.now.time;
     const Forces start_forces =
         blends(kinematics(settings, run.now, stage.supports.fixed, taken)) ? run.newton.forces() : Forces{};
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, time}};
@@ -163,6 +164,7 @@ void run_implicit(Run& run) {
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
     run.set_reactions(run.newton.forces().residual(), supports);
+    if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (s == 0 && !run.accept()) return;
     Stage stage{run, step, supports, run.now.time, C, run.now.u.norm()};

@@ -47,12 +47,42 @@ void Run::refuse_pushed_bodies() {
   now.step = 0;
 }
 
+bool Run::sound_start() {
+  const Assembled& found = newton.forces().found;
+  if (found.finite && std::isfinite(found.energy)) return true;
+  IncrementResult result;
+  result.worst_element = found.smallest_J_element;
+  result.worst_J = found.smallest_J;
+  result.stop = newton.state_verdict() == Stop::inverted_element ? Stop::inverted_element : Stop::diverged;
+  explain(*this, result, -1);
+  outcome.diagnosis +=
+      "; the run begins in this state, where the law has no forces: change initialDisplacement, or take a law that "
+      "survives inversion (neoHookeanMaterial form=\"stable\")";
+  return false;
+}
+
 bool Run::start_at_rest() {
   refuse_pushed_bodies();
   newton.prepare(now.u, {});
   newton.rest();
+  if (!sound_start()) return false;
   mark();
   return accept();
+}
+
+double next_stop(const Step& step, double from, double to) {
+  double next = to;
+  const double least = from + 1e-9 * step.dt;
+  const auto look = [&](const auto& conditions) {
+    for (const auto& condition : conditions)
+      for (const double kink : condition.factor.kinks)
+        if (kink > least) next = std::min(next, kink);
+  };
+  look(step.prescribed);
+  look(step.forces);
+  look(step.face_loads);
+  look(step.body_forces);
+  return next;
 }
 
 void Run::check_balanced(const ScaledLoads& loads) const {

@@ -42,6 +42,8 @@ struct Run {
   void hold(const Step& step, const Mask& fixed);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
+  /// False where the forces of the state that a run begins with are not finite; the outcome is explained then.
+  bool sound_start();
   /// Begins statics: refuses pushed bodies and passes the state without loads on; false if the observer wants to stop.
   bool start_at_rest();
   /// Throws Error unless these loads leave the free rigid motions alone.
@@ -70,6 +72,7 @@ struct EquilibriumPath {
   Supports supports;
   double start, duration;  ///< time
   double time(double share) const { return start + share * duration; }
+  double share(double at) const { return (at - start) / duration; }
 };
 
 /// Enters a step: the path from the present state over the whole of it, whose loads are still to be said.
@@ -91,6 +94,9 @@ void run_implicit(Run& run);
 
 /// Time steps without equations to solve; see explicit.cpp.
 void run_explicit(Run& run);
+
+/// Where adaptive steps of a step from one time towards another end at the latest: at the next kink of its load curves.
+double next_stop(const Step& step, double from, double to);
 
 /// How an implicit method ties velocity and acceleration to the displacement at the end of a step of dt.
 Kinematics kinematics(const Settings& settings, const Motion& now, const Mask& fixed, double dt);

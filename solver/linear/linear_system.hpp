@@ -48,6 +48,8 @@ class LinearSystem {
   virtual std::size_t factor_bytes() const = 0;
   /// Negative eigenvalues of the matrix factorised last (Sylvester's law of inertia); 0 unless made by make_indefinite.
   virtual long negative_pivots() const { return 0; }
+  /// True if the determinant of the matrix factorised last is negative; only where made by make_unsymmetric.
+  virtual bool negative_determinant() const { return false; }
   long iterations = 0;   ///< CG iterations so far, over all solves
   bool gave_up = false;  ///< CG missed its tolerance once, and Cholesky has taken over
 };

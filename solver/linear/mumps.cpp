@@ -104,6 +104,8 @@ class Mumps final : public LinearSystem {
     return static_cast<std::size_t>(entries) * sizeof(double);
   }
 
+  bool negative_determinant() const override { return ready_ && !symmetric_ && data_.rinfog[11] < 0; }
+
   long negative_pivots() const override { return ready_ && symmetric_ ? data_.infog[11] : 0; }
 
  private:
@@ -122,11 +124,12 @@ class Mumps final : public LinearSystem {
     if (data_.infog[0] < 0) return status();
     ready_ = true;
     for (int stream = 0; stream < 3; ++stream) data_.icntl[stream] = -1;
-    data_.icntl[3] = 0;   // silence
-    data_.icntl[5] = 0;   // no permutation to a large diagonal: it would undo the symmetric pattern
-    data_.icntl[6] = 1;   // the order below
-    data_.icntl[12] = 1;  // count every pivot
-    data_.icntl[23] = 1;  // find null pivots
+    data_.icntl[3] = 0;                    // silence
+    data_.icntl[5] = 0;                    // no permutation to a large diagonal: it would undo the symmetric pattern
+    data_.icntl[6] = 1;                    // the order below
+    data_.icntl[12] = 1;                   // count every pivot
+    data_.icntl[23] = 1;                   // find null pivots
+    data_.icntl[32] = symmetric_ ? 0 : 1;  // the determinant
     data_.n = entries_.size();
     data_.nnz = static_cast<MUMPS_INT8>(entries_.rows.size());
     data_.irn = entries_.rows.data();

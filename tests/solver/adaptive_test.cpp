@@ -63,5 +63,25 @@ TEST(AdaptiveStep, CutsAndGrowsLoadSteps) {
   EXPECT_GT(outcome.check.smallest_J, 0);
 }
 
+// A load curve that lasts from 0 to 0.1 inside a reported step of 1: a push of 0.1/2 (its area) on the oscillator.
+TEST(AdaptiveStep, MeetsTheKinksOfLoadCurves) {
+  for (const Integrator integrator : {Integrator::implicit_euler, Integrator::newmark, Integrator::quasi_static}) {
+    Model model =
+        oscillator_model(integrator == Integrator::quasi_static ? Integrator::newmark : integrator, true, 1, 1);
+    model.settings.integrator = integrator;
+    model.settings.adaptive_step = true;
+    for (auto& load : model.steps[0].face_loads)
+      load.factor = {[](double t) { return std::max(0.0, 1 - std::abs(t - 0.05) / 0.05); }, {0, 0.05, 0.1}};
+    for (auto& load : model.steps[0].forces)
+      load.factor = {[](double t) { return std::max(0.0, 1 - std::abs(t - 0.05) / 0.05); }, {0, 0.05, 0.1}};
+    ASSERT_TRUE(!model.steps[0].face_loads.empty() || !model.steps[0].forces.empty());
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    EXPECT_GE(outcome.linear_solves, 2) << name(integrator);
+    if (integrator == Integrator::quasi_static) continue;
+    EXPECT_GT(outcome.state.energies.external_work, 0) << name(integrator);
+  }
+}
+
 }  // namespace
 }  // namespace msml::fe

@@ -88,5 +88,26 @@ TEST(ArcLength, RefusesMovedSupportsAndOtherIntegrators) {
   EXPECT_THROW(solve(model, {}), Error);
 }
 
+// A stiffening cube under traction: no limit point, so that only the bounds end it.
+TEST(ArcLength, EndsAtItsBounds) {
+  Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {});
+  model.regions[0].law = neo_hookean("log", 1000, 0.3);
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+  FaceLoad pull{.name = "pull", .tractions = {Vec3(100, 0, 0)}};
+  pull.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[0] > 1 - 1e-9; });
+  model.steps[0].face_loads = {pull};
+  model.settings.arc_length = {.on = true, .steps = 50, .load = 3};
+  model.settings.load_steps = 2;
+  const Outcome loaded = solve(model, {});
+  ASSERT_EQ(loaded.stop, Stop::converged) << loaded.diagnosis;
+  EXPECT_GE(loaded.state.load_factor, 3);
+  EXPECT_LT(loaded.state.load_factor, 3.01);
+  model.settings.arc_length = {.on = true, .steps = 50, .displacement = 0.25};
+  const Outcome moved = solve(model, {});
+  const double largest = moved.state.displacement.rowwise().norm().maxCoeff();
+  EXPECT_GE(largest, 0.25);
+  EXPECT_LT(largest, 0.2525);
+}
+
 }  // namespace
 }  // namespace msml::fe

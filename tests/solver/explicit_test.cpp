@@ -167,5 +167,27 @@ TEST(Explicit, AFreeBodyFallsWithoutStrainAndKeepsItsMomentum) {
   }
 }
 
+// A mass hangs on a damped spring. Along it dt < 2 zeta/omega = c/k = 0.04 holds; across it nothing damps once the
+// spring is stretched, and forward Euler lets a swing grow by 1 + g/(2 l) dt^2 a step, which is little in five seconds.
+TEST(ForwardEuler, RunsADampedPendulumWhoseSwingGrowsLittle) {
+  const auto hang = [](double dt, int count) {
+    Model model;
+    Mesh mesh;
+    mesh.points.resize(1, 3);
+    mesh.points << 0, 0, -1;
+    model.mesh = std::make_shared<const Mesh>(mesh);
+    model.point_masses = {{0, 2}};
+    model.steps = {{.name = "swing", .dt = dt, .count = count}};
+    model.steps[0].springs = {{.name = "s", .first = 0, .stiffness = 50, .damping = 2, .rest = 1}};
+    model.settings.integrator = Integrator::forward_euler;
+    return solve(model, {});
+  };
+  const Outcome fine = hang(0.001, 5000);
+  EXPECT_EQ(fine.stop, Stop::converged) << fine.diagnosis;
+  EXPECT_NEAR(fine.state.displacement(0, 2), -0.362083, 2e-2);  // exact; first order in dt
+  EXPECT_EQ(fine.warnings.size(), 1u);
+  EXPECT_EQ(hang(0.05, 100).stop, Stop::unstable_step);
+}
+
 }  // namespace
 }  // namespace msml::fe

@@ -5,6 +5,7 @@
 
 #include "solver/equations.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "tests/solver/law_by_name.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace msml::fe {
@@ -158,6 +159,21 @@ TEST(Failure, ADynamicInversionNamesTimeAndIncrement) {
     EXPECT_EQ(outcome.stop, Stop::inverted_element) << outcome.diagnosis;
     EXPECT_THAT(outcome.diagnosis, HasSubstr("with dt = 0.1"));
     EXPECT_GT(outcome.check.smallest_J, 0);
+  }
+}
+
+TEST(Failure, AStartWithoutForcesIsNamedBeforeAnythingIsWritten) {
+  for (const Integrator integrator : {Integrator::static_, Integrator::implicit_euler, Integrator::symplectic_euler}) {
+    Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {});
+    model.regions[0].law = neo_hookean("log", 1000, 0.3);
+    model.settings.integrator = integrator;
+    model.steps[0].dt = 1e-4;
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    model.initial_displacement = model.mesh->points * -2;
+    int states = 0;
+    const Outcome outcome = solve(model, [&](const State&) { return ++states, true; });
+    EXPECT_EQ(outcome.stop, Stop::inverted_element) << name(integrator) << outcome.diagnosis;
+    EXPECT_EQ(states, 0) << name(integrator);
   }
 }
 

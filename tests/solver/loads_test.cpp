@@ -6,6 +6,7 @@
 
 #include "msml/core/error.hpp"
 #include "solver/equations.hpp"
+#include "tests/solver/law_by_name.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
 
@@ -159,6 +160,28 @@ TEST(FollowerPressure, ConvergesWhereTheLoadedFaceHasAFreeRim) {
   ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
   EXPECT_LT(outcome.check.residual, 1e-8);
   EXPECT_GT(outcome.check.largest_rotation, 30);  // far into the finite range
+}
+
+// A pressure on the free end follows it: such a load has no energy, the symmetric part of its tangent is indefinite
+// long before anything buckles, and the beam bends to 60 degrees and more along a stable path.
+TEST(FollowerPressure, OnAnOpenEndIsNotTakenForBuckling) {
+  Model model = make_model(box_mesh(8, 2, 2, {4, 1, 1}, CellKind::tet10), {});
+  model.regions[0].law = neo_hookean("log", 1000, 0.3);
+  const Mesh& mesh = *model.mesh;
+  model.steps[0].prescribed = {fix(points_where(mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+  FaceLoad load{.name = "p", .pressures = {11}, .follower = true};
+  load.faces = faces_where(mesh, [](const Vec3& x) { return x[2] > 1 - 1e-9; });
+  model.steps[0].face_loads = {load};
+  Vec3 tips[2];
+  for (const LinearSolver solver : {LinearSolver::direct, LinearSolver::cg}) {
+    model.settings.linear_solver = solver;
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    EXPECT_LT(outcome.check.residual, 1e-7);
+    tips[solver == LinearSolver::cg] = outcome.state.displacement.row(nearest_point(mesh, {4, 0.5, 0.5})).transpose();
+  }
+  EXPECT_LT((tips[0] - tips[1]).norm(), 1e-6);
+  EXPECT_GT(tips[0].norm(), 3);
 }
 
 }  // namespace

@@ -202,5 +202,26 @@ TEST(Pendulum, KeepsItsEnergyWhenItSwings) {
   EXPECT_GT(outcome.state.energies.kinetic + outcome.state.energies.elastic, 0);
 }
 
+// Two springs of stiffness 2 and 6 hold a particle between points at x = 0 and x = 4, both without rest length: it
+// rests at 6 4/(2 + 6) = 3, a way of 1 from its place at x = 2.
+TEST(Springs, MoveABodyThatNothingElseLoads) {
+  for (const Integrator integrator : {Integrator::static_, Integrator::quasi_static}) {
+    Model model;
+    Mesh mesh;
+    mesh.points.resize(1, 3);
+    mesh.points << 2, 0, 0;
+    model.mesh = std::make_shared<const Mesh>(mesh);
+    model.point_masses = {{0, 1}};
+    model.steps = {{.name = "s", .dt = 1, .count = 1, .gravity = Vec3::Zero()}};
+    model.steps[0].springs = {{.name = "a", .first = 0, .stiffness = 2},
+                              {.name = "b", .first = 0, .point = Vec3(4, 0, 0), .stiffness = 6}};
+    model.settings.integrator = integrator;
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    EXPECT_NEAR(outcome.state.displacement(0, 0), 1, 1e-8);
+    EXPECT_LT(outcome.check.residual, 1e-8);
+  }
+}
+
 }  // namespace
 }  // namespace msml::fe

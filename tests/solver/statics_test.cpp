@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+
 #include "tests/solver/meshes.hpp"
 
 namespace msml::fe {
@@ -170,6 +172,32 @@ TEST(Static, AColumnUnderItsOwnWeightIsShortenedByTheClosedForm) {
     EXPECT_NEAR(mean, exact, (kind == CellKind::tet4 ? 0.02 : 1e-3) * std::abs(exact));
     EXPECT_NEAR(outcome.check.sum_reactions[2], rho * g * L, 1e-9 * rho * g * L);
   }
+}
+
+TEST(Statics, AnAnswerOutOfBalanceIsWarnedOf) {
+  Model model = beam_model(2, CellKind::tet4, 0.3, Strain::corotated);
+  const auto warned = [](const Outcome& outcome) {
+    return std::any_of(outcome.warnings.begin(), outcome.warnings.end(),
+                       [](const std::string& text) { return text.find("out of balance") != std::string::npos; });
+  };
+  EXPECT_FALSE(warned(solve(model, {})));
+  model.settings.newton_iterations = 1;
+  EXPECT_TRUE(warned(solve(model, {})));
+}
+
+// Pulled at both ends: loads, reactions and inertia all sum to nothing.
+TEST(Statics, ABodyInBalanceWithItselfIsInBalance) {
+  Model model =
+      make_model(box_mesh(2, 2, 2, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1000, .poisson_ratio = 0.3});
+  const auto at = [&](double x) {
+    return points_where(*model.mesh, [x](const Vec3& X) { return std::abs(X[0] - x) < 1e-9; });
+  };
+  Prescribed pulled = fix(at(1), true, false, false);
+  pulled.values = {Vec3(0.1, 0, 0)};
+  model.steps[0].prescribed = {fix(at(0)), pulled};
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged);
+  EXPECT_LT(outcome.check.balance, 1e-6);
 }
 
 }  // namespace

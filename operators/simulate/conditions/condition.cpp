@@ -102,7 +102,9 @@ Key<std::vector<double>> add_table(Description& description) {
 
 fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table) {
   if (!record.has(table)) return {};
-  return [list = record[table]](double t) {
+  std::vector<double> times;
+  for (std::size_t i = 0; i < record[table].size(); i += 2) times.push_back(record[table][i]);
+  const auto value = [list = record[table]](double t) {
     if (t <= list.front()) return list[1];
     for (std::size_t i = 2; i + 1 < list.size(); i += 2)
       if (t < list[i]) {
@@ -111,6 +113,7 @@ fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table
       }
     return list.back();
   };
+  return {value, times};
 }
 
 std::string label(const Record& record) { return record.id.empty() ? record.tag() : record.id; }

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Linear systems of Newton's method.
+#include <algorithm>
+
+#include "solver/linear/gmres.hpp"
+#include "solver/newton.hpp"
+#include "solver/stopwatch.hpp"
+
+namespace msml::fe {
+namespace {
+
+constexpr double shift = 1e-8;  // far above round-off, far below the softest motion that strains the body
+
+void shift_diagonal(BlockMatrix& A) {
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) A.values[9 * static_cast<std::size_t>(p) + 4 * i] *= 1 + shift;
+}
+
+/// Adds a thousandth of the mean diagonal to each diagonal entry.
+void lift_diagonal(BlockMatrix& A) {
+  double sum = 0;
+  const auto entry = [&](int p, std::size_t i) -> double& { return A.values[9 * static_cast<std::size_t>(p) + 4 * i]; };
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) sum += entry(p, i);
+  const double lift = 1e-3 * sum / (3.0 * static_cast<double>(A.pattern->diagonal.size()));
+  for (const int p : A.pattern->diagonal)
+    for (std::size_t i = 0; i < 3; ++i) entry(p, i) += lift;
+}
+
+/// A x = b with `shifted` factorised instead of the singular A: refines while that helps.
+LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const Mask& fixed, const Vector& b,
+                            double tolerance, Vector& x) {
+  Vector rest = b, correction, product;
+  x = Vector::Zero(b.size());
+  double before = free_norm(b, fixed);
+  const double target = tolerance * before;
+  for (int round = 0; round < 6; ++round) {
+    const LinearStatus status = shifted.solve(rest, tolerance, correction);
+    if (status != LinearStatus::done) return status;
+    multiply(A, Vector(x + correction), product);
+    const Vector left = b - product;
+    const double now = free_norm(left, fixed);
+    if (round > 0 && !(now < before)) break;
+    x += correction;
+    rest = left;
+    before = now;
+    if (now <= target) break;
+  }
+  return LinearStatus::done;
+}
+
+}  // namespace
+
+LinearStatus Newton::factor(const Increment& increment) {
+  const Kinematics& motion = increment.motion;
+  const Settings& settings = model_.settings;
+  const bool slides = increment.slides && !increment.slides->empty();
+  factored_ = &tangent_;
+  if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
+    return linear_->factor(tangent_, increment.fixed);
+  factored_ = &effective_;
+  if (motion.dynamic()) {
+    // Divided by force_share, so that the tangent is there as it is.
+    const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
+    effective_.assign(tangent_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
+    if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
+  } else {
+    effective_.assign(tangent_, 0, equations_.mass());
+  }
+  if (rigid_free_) shift_diagonal(effective_);
+  if (lifted_) lift_diagonal(effective_);
+  if (increment.slides) increment.slides->project(effective_);
+  return linear_->factor(effective_, increment.fixed);
+}
+
+double Newton::linear_tolerance(const Vector& right, const Mask& fixed) const {
+  const double asked = model_.settings.linear_tolerance;
+  if (equations_.small_strain() || model_.settings.newton_iterations == 1 || !linear_->iterative()) return asked;
+  const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
+  return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
+}
+
+LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
+  const double tolerance = linear_tolerance(right, increment.fixed);
+  if (rigid_free_ && !followers_ && !(increment.slides && !increment.slides->empty()))
+    return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
+  if (!followers_) return linear_->solve(right, tolerance, step);
+  Vector extra;
+  const LinearMap whole = [&](const Vector& x, Vector& y) {
+    multiply(effective_, x, y);
+    multiply(*followers_, x, extra);
+    if (increment.slides) increment.slides->project(extra);
+    y += extra;
+  };
+  const LinearStatus status = solve_unsymmetric(whole, *linear_, increment.fixed, right, tolerance, step);
+  if (status == LinearStatus::done || status == LinearStatus::out_of_memory) return status;
+  // Far from the symmetric part, for instance where a pressure blows a thin wall up, only a factorisation of all helps.
+  const LinearStatus factored = factor_whole(increment);
+  return factored == LinearStatus::done ? unsymmetric_->solve(right, tolerance, step) : factored;
+}
+
+LinearStatus Newton::factor_whole(const Increment& increment) {
+  if (!whole_) whole_ = std::make_unique<BlockMatrix>(effective_.pattern);
+  whole_->values = effective_.values;
+  add(*whole_, 1, *followers_);
+  if (increment.slides) increment.slides->project(*whole_);
+  if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads);
+  return unsymmetric_->factor(*whole_, increment.fixed);
+}
+
+LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step) {
+  const Stopwatch watch(seconds_linear_);
+  LinearStatus status = factor(increment);
+  // A pressure that follows an open face makes the symmetric part indefinite long before anything buckles.
+  whole_taken_ = followers_ && status == LinearStatus::not_positive_definite;
+  if (whole_taken_) status = factor_whole(increment);
+  if (status != LinearStatus::done) return status;
+  Vector right = residual / increment.motion.force_share, product;
+  if (jump.size() > 0) {
+    multiply(tangent_, jump, product);
+    right -= product;
+    if (followers_) {
+      multiply(*followers_, jump, product);
+      right -= product;
+    }
+  }
+  if (increment.slides) increment.slides->project(right);
+  ++solves_;
+  if (whole_taken_) return unsymmetric_->solve(right, linear_tolerance(right, increment.fixed), step);
+  return solve(increment, right, step);
+}
+
+}  // namespace msml::fe
