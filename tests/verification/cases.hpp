@@ -41,7 +41,7 @@ struct Method {
   int exit_code = 0;             ///< what the program must end with
   int iterations = 0;            ///< of Newton's method over the whole run, at most; 0: as many as it takes
   Measure measure;
-  std::string says;  ///< words that its messages must hold
+  std::string says;  ///< words that its messages or its report must hold
 };
 
 /// A problem with its reference.

@@ -142,9 +142,10 @@ Row run_once(const Program& program, const Case& each, const Method& method,
         run_of(program, each, method, set, program.results / file_name(each.name + " " + row.method), runs);
     const std::string output = content(folder / "output.txt");
     if (code != method.exit_code) throw std::runtime_error(fmt::format("exit code {}: {}", code, fault(output)));
-    if (!method.says.empty() && output.find(method.says) == std::string::npos)
+    const std::string report = content(folder / "log.json");
+    if (!method.says.empty() && (output + report).find(method.says) == std::string::npos)
       throw std::runtime_error(fmt::format("does not say '{}'", method.says));
-    const Json log = Json::parse(content(folder / "log.json"));
+    const Json log = Json::parse(report);
     row.unknowns = unknowns_of(log);
     row.seconds = simulation_seconds(log);
     if (!method.says.empty()) row.remark = fmt::format("says '{}'", method.says);
