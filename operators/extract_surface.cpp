@@ -32,6 +32,11 @@ Field numbers(std::string name, const std::vector<int>& ids) {
   return {std::move(name), 1, std::vector<double>(ids.begin(), ids.end())};
 }
 
+/// A second array of the same name would hide one of the two in the file.
+bool ours(const Field& field) {
+  return field.name == "originalPoint" || field.name == "originalCell" || field.name == "region";
+}
+
 Surface surface_of(const Mesh& mesh) {
   Surface surface;
   std::vector<int> fresh(static_cast<std::size_t>(mesh.point_count()), -1), points, cells, regions;
@@ -50,9 +55,9 @@ Surface surface_of(const Mesh& mesh) {
   for (std::size_t i = 0; i < points.size(); ++i)
     surface.points.row(static_cast<Eigen::Index>(i)) = mesh.points.row(points[i]);
   for (const Field& field : mesh.point_fields)
-    surface.point_fields.push_back({field.name, field.components, picked(field, points)});
+    if (!ours(field)) surface.point_fields.push_back({field.name, field.components, picked(field, points)});
   for (const Field& field : mesh.cell_fields)
-    surface.cell_fields.push_back({field.name, field.components, picked(field, cells)});
+    if (!ours(field)) surface.cell_fields.push_back({field.name, field.components, picked(field, cells)});
   surface.point_fields.push_back(numbers("originalPoint", points));
   surface.cell_fields.push_back(numbers("originalCell", cells));
   surface.cell_fields.push_back(numbers("region", regions));
@@ -72,14 +77,7 @@ Operator extract_surface() {
   op.target("targetSurfaceMeshFilename", surface, "file to write the surface to");
   op.run([=](Context& c) {
     require_tets(c.get(mesh), "ExtractSurfaceMesh");
-    Mesh bare = c.get(mesh);
-    // A second array of the same name would hide one of the two in the file.
-    const auto ours = [](const Field& f) {
-      return f.name == "originalPoint" || f.name == "originalCell" || f.name == "region";
-    };
-    std::erase_if(bare.point_fields, ours);
-    std::erase_if(bare.cell_fields, ours);
-    c.set(surface, surface_of(bare));
+    c.set(surface, surface_of(c.get(mesh)));
   });
   return op;
 }

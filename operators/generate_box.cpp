@@ -29,11 +29,10 @@ Operator generate_box() {
   op.note("Points on the faces of the box lie exactly in their planes, so that boxes with a small margin select them.");
   op.run([=](Context& c) {
     const auto& cells = c.get(divisions);
-    const Mesh box =
-        generate(Box{vector(c.get(origin)),
-                     vector(c.get(size)),
-                     {static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2])}});
-    c.set(mesh, c.get(quadratic) ? to_quadratic(box) : box);
+    Mesh box = generate(Box{vector(c.get(origin)),
+                            vector(c.get(size)),
+                            {static_cast<int>(cells[0]), static_cast<int>(cells[1]), static_cast<int>(cells[2])}});
+    c.set(mesh, c.get(quadratic) ? to_quadratic(box) : std::move(box));
   });
   return op;
 }

@@ -22,11 +22,11 @@ Operator generate_rectangle() {
   op.run([=](Context& c) {
     const auto &start = c.get(origin), &lengths = c.get(size);
     const auto& cells = c.get(divisions);
-    const Mesh made = generate(Rectangle{{start[0], start[1], start[2]},
-                                         lengths[0],
-                                         lengths[1],
-                                         {static_cast<int>(cells[0]), static_cast<int>(cells[1])}});
-    c.set(mesh, c.get(quadratic) ? to_quadratic(made) : made);
+    Mesh made = generate(Rectangle{{start[0], start[1], start[2]},
+                                   lengths[0],
+                                   lengths[1],
+                                   {static_cast<int>(cells[0]), static_cast<int>(cells[1])}});
+    c.set(mesh, c.get(quadratic) ? to_quadratic(made) : std::move(made));
   });
   return op;
 }

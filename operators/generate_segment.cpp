@@ -18,9 +18,8 @@ Operator generate_segment() {
   op.target("meshFilename", mesh, "file to write the mesh to");
   op.run([=](Context& c) {
     const auto& start = c.get(origin);
-    const Mesh made =
-        generate(Segment{{start[0], start[1], start[2]}, c.get(length), static_cast<int>(c.get(divisions))});
-    c.set(mesh, c.get(quadratic) ? to_quadratic(made) : made);
+    Mesh made = generate(Segment{{start[0], start[1], start[2]}, c.get(length), static_cast<int>(c.get(divisions))});
+    c.set(mesh, c.get(quadratic) ? to_quadratic(made) : std::move(made));
   });
   return op;
 }

@@ -59,21 +59,37 @@ struct FaceKey {
   OuterFace face;
 };
 
-std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
-  std::vector<FaceKey> faces;
+/// Calls use(key) for every face of every tetrahedron.
+template <class Use>
+void for_faces(const Mesh& mesh, const Use& use) {
   for (int c = 0; c < mesh.cell_count(); ++c) {
     if (!is_tet(mesh.kinds[static_cast<std::size_t>(c)])) continue;
     const int* nodes = mesh.cell(c);
     for (int f = 0; f < 4; ++f) {
       const auto& local = tet_faces[static_cast<std::size_t>(f)];
-      FaceKey key{{nodes[local[0]], nodes[local[1]], nodes[local[2]]}, {c, f}};
-      std::sort(key.corners.begin(), key.corners.end());
-      faces.push_back(key);
+      int a = nodes[local[0]], b = nodes[local[1]], d = nodes[local[2]];
+      if (a > b) std::swap(a, b);
+      if (b > d) std::swap(b, d);
+      if (a > b) std::swap(a, b);
+      use(FaceKey{{a, b, d}, {c, f}});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const FaceKey& a, const FaceKey& b) {
+}
+
+/// By corners, then by cell: first into a bucket for each smallest corner, then in the bucket.
+std::vector<FaceKey> sorted_faces(const Mesh& mesh) {
+  int most = -1;
+  for_faces(mesh, [&](const FaceKey& key) { most = std::max(most, key.corners[0]); });
+  std::vector<std::size_t> ends(static_cast<std::size_t>(most + 2), 0);
+  for_faces(mesh, [&](const FaceKey& key) { ++ends[static_cast<std::size_t>(key.corners[0]) + 1]; });
+  for (std::size_t i = 1; i < ends.size(); ++i) ends[i] += ends[i - 1];
+  std::vector<FaceKey> faces(ends.back());
+  for_faces(mesh, [&](const FaceKey& key) { faces[ends[static_cast<std::size_t>(key.corners[0])]++] = key; });
+  const auto before = [](const FaceKey& a, const FaceKey& b) {
     return std::tie(a.corners, a.face.cell) < std::tie(b.corners, b.face.cell);
-  });
+  };
+  for (std::size_t i = 0, begin = 0; i + 1 < ends.size(); begin = ends[i++])
+    std::sort(faces.begin() + static_cast<long>(begin), faces.begin() + static_cast<long>(ends[i]), before);
   return faces;
 }
 

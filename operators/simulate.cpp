@@ -52,13 +52,13 @@ using Clock = std::chrono::steady_clock;
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-fe::Outcome run(const Simulation& simulation, const fe::Measurer& measurer, Writers& writers, Reporter& reporter,
-                Progress& progress, simulation::RunTimes& times) {
+fe::Outcome run(const Simulation& simulation, Writers& writers, Reporter& reporter, Progress& progress,
+                simulation::RunTimes& times) {
   Clock::time_point start = Clock::now();
   return fe::solve(simulation.model, [&](const fe::State& state) {
     const Clock::time_point arrived = Clock::now();
     if (state.increment > 0) times.steps += std::chrono::duration<double>(arrived - start).count();
-    StateFields fields(simulation.model, simulation.body, measurer, state);
+    StateFields fields(simulation.model, simulation.body, state);
     for (const auto& writer : writers)
       if (writer->wants(state)) writer->write(state, fields);
     ++times.states;
@@ -85,6 +85,16 @@ void finish(const Simulation& simulation, const fe::Outcome& outcome, const simu
     write_whole(folder / (request.id + ".json"), simulation::report_json(simulation, settings, check));
 }
 
+/// Adds the mesh and the output, and puts the largest first.
+void note_memory(const Simulation& simulation, const Writers& writers, fe::Outcome& outcome) {
+  std::size_t output = 0;
+  for (const auto& writer : writers) output += writer->bytes();
+  outcome.held.push_back({"mesh", bytes(Value(simulation.body.mesh))});
+  outcome.held.push_back({"output", output});
+  std::stable_sort(outcome.held.begin(), outcome.held.end(),
+                   [](const fe::Held& a, const fe::Held& b) { return a.bytes > b.bytes; });
+}
+
 void simulate_object(Context& context) {
   Simulation simulation = simulation::build_model(context.args(), context.reporter(), context.threads());
   Progress progress;
@@ -96,11 +106,10 @@ void simulate_object(Context& context) {
   };
   simulation.model.check();
   Writers writers = simulation::make_writers(simulation, context.output_folder(), context.reporter());
-  const fe::Measurer measurer(simulation.model);
   simulation::RunTimes times;
-  const fe::Outcome outcome = [&] {
+  fe::Outcome outcome = [&] {
     try {
-      return run(simulation, measurer, writers, context.reporter(), progress, times);
+      return run(simulation, writers, context.reporter(), progress, times);
     } catch (const Error&) {  // ended from outside: how large the problem is, is known all the same
       context.reporter().record("size", fmt::format("{{\"unknowns\": {}}}", fe::unknowns(simulation.model, 0)));
       throw;
@@ -108,9 +117,10 @@ void simulate_object(Context& context) {
   }();
   // Where the start has no forces, there is no state to write.
   const bool stateless = times.states == 0 && outcome.stop != fe::Stop::unstable_step;
-  StateFields fields(simulation.model, simulation.body, measurer, outcome.state);
+  StateFields fields(simulation.model, simulation.body, outcome.state);
   for (const auto& writer : writers)
     if (!stateless) writer->finish(outcome.state, fields);
+  note_memory(simulation, writers, outcome);
   finish(simulation, outcome, times, context.output_folder(), context.reporter());
   if (outcome.stop != fe::Stop::converged)
     throw Error(outcome.diagnosis, simulation.where,

@@ -82,15 +82,21 @@ PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int no
   });
   auto pattern = std::make_shared<Pattern>();
   pattern->offsets.reserve(static_cast<std::size_t>(count) + 1);
-  for (const Rows& rows : pieces) {
+  std::size_t all = 0;
+  for (const Rows& rows : pieces) all += rows.columns.size();
+  pattern->columns.reserve(all);
+  for (Rows& rows : pieces) {
     pattern->columns.insert(pattern->columns.end(), rows.columns.begin(), rows.columns.end());
     for (const int size : rows.sizes) pattern->offsets.push_back(pattern->offsets.back() + size);
+    rows = {};
   }
+  pattern->diagonal.reserve(static_cast<std::size_t>(count));
   for (int r = 0; r < count; ++r) pattern->diagonal.push_back(pattern->find(r, r));
   return pattern;
 }
 
 void BlockMatrix::set_zero() {
+  values.resize(9 * pattern->columns.size());
   tbb::parallel_for(Range(0, values.size(), 1 << 16), [&](const Range& r) {
     std::fill(values.begin() + static_cast<long>(r.begin()), values.begin() + static_cast<long>(r.end()), 0.0);
   });

@@ -16,6 +16,7 @@ struct Pattern {
   std::vector<int> columns;     ///< neighbours of node r: columns[offsets[r] .. offsets[r+1]), ascending
   std::vector<int> diagonal;    ///< position of block (r, r)
   int nodes() const { return static_cast<int>(diagonal.size()); }
+  std::size_t bytes() const { return (offsets.size() + columns.size() + diagonal.size()) * sizeof(int); }
   /// Position of block (row, column), which must exist.
   int find(int row, int column) const;
 };
@@ -37,7 +38,7 @@ struct BlockMatrix {
   PatternPtr pattern;
   std::vector<double> values;
   explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)), values(9 * pattern->columns.size(), 0.0) {}
-  /// With room for `room` numbers only, until assign() is called.
+  /// With room for `room` numbers only, until assign() or set_zero() is called.
   BlockMatrix(PatternPtr p, std::size_t room) : pattern(std::move(p)), values(room, 0.0) {}
   void set_zero();
   /// Becomes A + s M.
@@ -52,6 +53,8 @@ void multiply(const ScalarMatrix& A, const Vector& x, Vector& y);
 void add(BlockMatrix& A, double s, const ScalarMatrix& M);
 /// A += s B.
 void add(BlockMatrix& A, double s, const BlockMatrix& B);
+
+inline std::size_t bytes(const Vector& v) { return static_cast<std::size_t>(v.size()) * sizeof(double); }
 
 /// x . y, summed in pieces of fixed size so that the result does not depend on the number of threads.
 double dot(const Vector& x, const Vector& y);

@@ -38,17 +38,21 @@ void check_balance(const Run& run, const Supports& supports, Check& check) {
 }
 
 void check_deformation(const Run& run, Check& check) {
-  const std::vector<ElementPoints> points = run.equations.elements().points(run.now.u);
+  const Numbering& numbering = run.equations.numbering();
+  std::vector<Deformation> elements(numbering.elements.size());
+  run.equations.elements().visit_points(run.now.u, [&](std::size_t e, const ElementPoints& points) {
+    elements[e] = deformation(points, numbering.scalar);
+  });
   double volume = 0, deformed = 0;
-  for (std::size_t e = 0; e < points.size(); ++e) {
-    const Deformation d = deformation(points[e], run.equations.numbering().scalar);
+  for (std::size_t e = 0; e < elements.size(); ++e) {
+    const Deformation& d = elements[e];
     volume += d.volume;
     deformed += d.deformed_volume;
     check.largest_strain = std::max(check.largest_strain, d.largest_strain);
     check.largest_rotation = std::max(check.largest_rotation, d.largest_rotation);
     if (d.smallest_J < check.smallest_J) {
       check.smallest_J = d.smallest_J;
-      check.smallest_J_element = run.equations.numbering().elements[e];
+      check.smallest_J_element = numbering.elements[e];
     }
   }
   check.volume = volume;
@@ -73,8 +77,12 @@ Vector smooth_start(const Vector& X, const Mask& fixed) {
 /// move).
 double lowest_period(Run& run, const Supports& supports) {
   LinearSystem& linear = run.newton.linear();
-  BlockMatrix K = run.newton.tangent();
-  supports.slides.project(K);
+  std::unique_ptr<BlockMatrix> projected;
+  if (!supports.slides.empty()) {
+    projected = std::make_unique<BlockMatrix>(run.newton.tangent());
+    supports.slides.project(*projected);
+  }
+  const BlockMatrix& K = projected ? *projected : run.newton.tangent();
   const ScalarMatrix& M = run.equations.mass();
   if (linear.factor(K, supports.fixed) != LinearStatus::done) return 0;
   Vector x = smooth_start(run.equations.positions(), supports.fixed), Mx, y;

@@ -35,6 +35,9 @@ struct Forces {
   Vector external, internal, inertia, damping;
   Assembled found;  ///< by the elements
   Vector residual() const { return external - internal - inertia - damping; }
+  std::size_t bytes() const {
+    return fe::bytes(external) + fe::bytes(internal) + fe::bytes(inertia) + fe::bytes(damping);
+  }
 };
 
 /// Model data in solver numbering. Throws nothing for a checked model but what make_loads throws.
@@ -43,6 +46,7 @@ class Equations {
   explicit Equations(const Model& model);
 
   const Elements& elements() const { return *elements_; }
+  std::shared_ptr<const Elements> shared_elements() const { return elements_; }
   const Numbering& numbering() const { return elements_->numbering(); }
   int size() const { return 3 * numbering().nodes(); }
   const Vector& positions() const { return X_; }  ///< reference positions, 3 per numbered node
@@ -70,7 +74,7 @@ class Equations {
 
  private:
   const Settings settings_;
-  std::unique_ptr<Elements> elements_;
+  std::shared_ptr<Elements> elements_;
   Vector X_;
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;

@@ -3,7 +3,6 @@
 #include "solver/measure.hpp"
 
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <Eigen/Eigenvalues>
@@ -248,33 +247,26 @@ Deformation deformation(const ElementPoints& points, bool scalar) {
   return d;
 }
 
-Measurer::Measurer(const Model& model) : model_(model), elements_(make_elements(model)) {}
-Measurer::~Measurer() = default;
-
-ElementResults Measurer::measure(const State& state, const ElementRequest& request) const {
-  const Numbering& numbering = elements_->numbering();
-  ElementResults results = empty_results(request, model_.mesh->kinds.size());
+ElementResults element_results(const Model& model, const State& state, const ElementRequest& request) {
+  ElementResults results = empty_results(request, model.mesh->kinds.size());
   const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(std::min(model_.settings.threads, static_cast<int>(allowed)));
+  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
   arena.execute([&] {
+    const std::shared_ptr<const Elements> elements = state.elements ? state.elements : make_elements(model);
+    const Numbering& numbering = elements->numbering();
     Vector u = to_vector(numbering, state.displacement);
     if (numbering.mixed()) put_pressures(numbering, state.pressure, u);
-    const std::vector<ElementPoints> points = elements_->points(u);
-    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t e) {
-      const Region& region = model_.regions[static_cast<std::size_t>(numbering.region_of[e])];
-      const std::span<const Vec3> places(points[e].place, static_cast<std::size_t>(points[e].count));
-      const auto law = law_of_points(model_, region, numbering.elements[e], places);
+    elements->visit_points(u, [&](std::size_t e, const ElementPoints& points) {
+      const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
+      const std::span<const Vec3> places(points.place, static_cast<std::size_t>(points.count));
+      const auto law = law_of_points(model, region, numbering.elements[e], places);
       const bool remembers = state.history_stress && !region.prony.g.empty();
-      const std::size_t offset = 6 * e * static_cast<std::size_t>(points[e].count);
-      const Origin origin{*law, model_.formulation, remembers ? state.history_stress->data() + offset : nullptr};
-      measure_element(points[e], origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
+      const std::size_t offset = 6 * e * static_cast<std::size_t>(points.count);
+      const Origin origin{*law, model.formulation, remembers ? state.history_stress->data() + offset : nullptr};
+      measure_element(points, origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
     });
   });
   return results;
-}
-
-ElementResults element_results(const Model& model, const State& state, const ElementRequest& request) {
-  return Measurer(model).measure(state, request);
 }
 
 std::vector<double> recover_at_nodes(const Model& model, const std::vector<double>& values, int components) {

@@ -261,6 +261,8 @@ struct Energies {
   Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  ///< about the origin, of the deformed body
 };
 
+class Elements;  // solver/elements/assembly.hpp
+
 /// The unknowns at one time. All arrays are #points x 3 of Model::mesh.
 struct State {
   double time = 0;
@@ -274,6 +276,8 @@ struct State {
   std::shared_ptr<const std::vector<double>> history_stress = nullptr;
   std::vector<double> pressure = {};  ///< mixed elements: #points, positive in compression; empty otherwise
   double load_factor = 1;             ///< statics: the share of this step's loads that acts
+  /// The elements that the state was computed with, so that its measures need not prepare them again; may be null.
+  std::shared_ptr<const Elements> elements = nullptr;
 };
 
 /// Which parts of ElementResults are computed; the others stay empty.
@@ -337,6 +341,12 @@ enum class Stop {
 };
 const char* name(Stop stop);
 
+/// Memory of one use: "matrix", "factor" (or hierarchy), "elements", "mass", "vectors".
+struct Held {
+  std::string name;
+  std::size_t bytes = 0;
+};
+
 /// How a run ended and what it cost. Where a tangent is not positive definite, that Newton iteration takes the law's
 /// semidefinite one; a static equilibrium whose own tangent is indefinite is unstable: indefinite_tangent.
 /// Non-convergence is a result with a reason, never an exception.
@@ -353,7 +363,7 @@ struct Outcome {
   long cg_iterations = 0;
   bool cg_gave_up = false;  ///< CG missed its tolerance once, and Cholesky took over
   double seconds_setup = 0, seconds_assembly = 0, seconds_linear = 0;
-  std::size_t matrix_bytes = 0, factor_bytes = 0;
+  std::vector<Held> held;  ///< what the run held in memory at its end, beside the mesh
 };
 
 /// Called with every accepted state, the initial one first. Returning false interrupts the run.
@@ -362,22 +372,7 @@ using Observer = std::function<bool(const State&)>;
 /// Solves all steps. Throws Error only for a model that check() refuses.
 Outcome solve(const Model& model, const Observer& observer);
 
-class Elements;  // solver/elements/assembly.hpp
-
-/// Measures states of one model, which must outlive it; the elements are prepared once.
-class Measurer {
- public:
-  explicit Measurer(const Model& model);
-  ~Measurer();
-  /// Stresses and strains of a state, as far as they are asked for.
-  ElementResults measure(const State& state, const ElementRequest& request) const;
-
- private:
-  const Model& model_;
-  std::unique_ptr<Elements> elements_;
-};
-
-/// The same for a single state.
+/// Stresses and strains of a state, as far as they are asked for.
 ElementResults element_results(const Model& model, const State& state, const ElementRequest& request = {});
 
 /// A field at cells recovered at the nodes: mean over the elements of each region around a node, weighted by volume;

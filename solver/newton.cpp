@@ -264,9 +264,9 @@ IncrementResult Newton::run(const Increment& increment) {
 Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads,
                                     const Supports& supports) {
   prepare(u, loads);
-  BlockMatrix C(tangent_.pattern);
+  BlockMatrix C(tangent_.pattern, 0), &mass = effective_;  // which no increment uses yet
   equations_.evaluate_motion(v, Vector::Zero(u.size()), damping(u, loads, C) ? &C : nullptr, forces_);
-  BlockMatrix mass(tangent_.pattern);
+  mass.set_zero();
   add(mass, 1, equations_.mass());
   const auto solver = make_conjugate_gradient(Preconditioner::jacobi);
   Vector a = Vector::Zero(u.size()), force = forces_.residual();

@@ -89,9 +89,10 @@ void Newton::report(Outcome& outcome) const {
   outcome.cg_gave_up = linear_->gave_up;
   outcome.seconds_assembly = seconds_assembly_;
   outcome.seconds_linear = seconds_linear_;
-  outcome.matrix_bytes = (tangent_.values.size() + effective_.values.size()) * sizeof(double) +
-                         tangent_.pattern->columns.size() * sizeof(int);
-  outcome.factor_bytes = linear_->factor_bytes();
+  const std::size_t values =
+      tangent_.values.size() + effective_.values.size() + (followers_ ? followers_->values.size() : 0);
+  outcome.held.push_back({"matrix", values * sizeof(double) + tangent_.pattern->bytes()});
+  outcome.held.push_back({"factor", linear_->factor_bytes() + (unsymmetric_ ? unsymmetric_->factor_bytes() : 0)});
 }
 
 }  // namespace msml::fe

@@ -42,6 +42,19 @@ std::string warning_of_imbalance(const Model& model, const Outcome& outcome) {
       outcome.check.residual, model.settings.newton_iterations);
 }
 
+/// Notes what the run holds beside what Newton's method has noted.
+void note_memory(const Run& run, Outcome& outcome) {
+  const Motion& now = run.now;
+  std::size_t vectors = run.newton.forces().bytes() + bytes(run.pull_before) + bytes(run.damping_before);
+  for (const Vector* v : {&now.u, &now.v, &now.a, &now.reaction, &run.equations.positions()}) vectors += bytes(*v);
+  for (const Points* p :
+       {&outcome.state.displacement, &outcome.state.velocity, &outcome.state.acceleration, &outcome.state.reaction})
+    vectors += static_cast<std::size_t>(p->size()) * sizeof(double);
+  outcome.held.push_back({"elements", run.equations.elements().bytes()});
+  outcome.held.push_back({"mass", run.equations.mass().values.size() * sizeof(double)});
+  outcome.held.push_back({"vectors", vectors});
+}
+
 Outcome run_model(const Model& model, const Observer& observer) {
   const auto begin = std::chrono::steady_clock::now();
   Outcome outcome;
@@ -63,6 +76,7 @@ Outcome run_model(const Model& model, const Observer& observer) {
                     "neo-Hookean law led the body out of it, and its own laws went on from there",
                     run.untangled));
   outcome.state = run.state();
+  note_memory(run, outcome);
   outcome.check = check_answer(run);
   for (const std::string& warning :
        {warning_of_imbalance(model, outcome), warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})

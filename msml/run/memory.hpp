@@ -10,4 +10,7 @@ void reset_peak_memory();
 /// Most resident memory in bytes since the last reset (or the start); 0 where the system does not tell.
 std::size_t peak_memory();
 
+/// Memory of this process that is resident now, in bytes; 0 where the system does not tell.
+std::size_t resident_memory();
+
 }  // namespace msml

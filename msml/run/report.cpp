@@ -72,9 +72,16 @@ std::string summary_table(const Graph& graph, const Plan& plan, const RunResult&
 }
 
 std::string report_json(const Graph& graph, const Plan& plan, const RunResult& result, const RunOptions& options) {
-  Json json{{"program", "msml"},        {"version", MSML_VERSION},    {"scene", graph.scene},
-            {"status", status(result)}, {"seconds", result.seconds},  {"peakBytes", peak(result)},
-            {"jobs", options.jobs},     {"threads", options.threads}, {"outputFolder", options.output_folder.string()}};
+  Json json{{"program", "msml"},
+            {"version", MSML_VERSION},
+            {"scene", graph.scene},
+            {"status", status(result)},
+            {"seconds", result.seconds},
+            {"peakBytes", peak(result)},
+            {"bareBytes", result.bare_bytes},
+            {"jobs", options.jobs},
+            {"threads", options.threads},
+            {"outputFolder", options.output_folder.string()}};
   if (!graph.units.empty()) json["units"] = graph.units;
   json["nodes"] = Json::array();
   for (const int i : plan.order)

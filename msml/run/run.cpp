@@ -44,6 +44,7 @@ class Scheduler {
 
   RunResult run() {
     const Clock::time_point start = Clock::now();
+    result_.bare_bytes = resident_memory();
     const int workers = std::max(1, std::min<int>(options_.jobs, static_cast<int>(plan_.order.size())));
     {
       std::vector<std::jthread> others;

@@ -96,6 +96,19 @@ std::string time_text(const fe::Outcome& outcome, const RunTimes& times, bool dy
   return text;
 }
 
+std::string memory_text(const fe::Outcome& outcome) {
+  std::string text;
+  for (const fe::Held& held : outcome.held)
+    text += fmt::format("{}{} {:.1f} MB", text.empty() ? "" : ", ", held.name, 1e-6 * static_cast<double>(held.bytes));
+  return line("memory", text);
+}
+
+Json held_json(const fe::Outcome& outcome) {
+  Json json;
+  for (const fe::Held& held : outcome.held) json[held.name] = held.bytes;
+  return json;
+}
+
 Json steps_json(const Simulation& simulation) {
   Json steps = Json::array();
   for (const fe::Step& step : simulation.model.steps)
@@ -122,7 +135,7 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
                                               check.lowest_period, 100 * check.damped_per_cycle));
   text += line("unknowns", with_commas(outcome.unknowns));
   text += line("solves", fmt::format("{} of Newton, {} linear", outcome.newton_iterations, outcome.linear_solves));
-  return text + time_text(outcome, times, fe::is_dynamic(simulation.model.settings.integrator));
+  return text + time_text(outcome, times, fe::is_dynamic(simulation.model.settings.integrator)) + memory_text(outcome);
 }
 
 std::string check_json(const Simulation& simulation, const fe::Outcome& outcome, const WorstShape& worst,
@@ -163,7 +176,7 @@ std::string check_json(const Simulation& simulation, const fe::Outcome& outcome,
         {"assembly", number(outcome.seconds_assembly)},
         {"linear", number(outcome.seconds_linear)},
         {"output", number(times.output)}}},
-      {"bytes", {{"matrix", outcome.matrix_bytes}, {"factor", outcome.factor_bytes}}},
+      {"bytes", held_json(outcome)},
       {"warnings", warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -26,6 +26,8 @@ class OutputWriter {
   virtual void finish(const fe::State& last, StateFields& fields) = 0;
   /// What `${id}` stands for.
   virtual Value value() const = 0;
+  /// Held in memory.
+  virtual std::size_t bytes() const { return 0; }
 };
 
 /// One writer per request of the simulation, which must outlive them. Throws Error where a request does not fit the

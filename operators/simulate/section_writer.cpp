@@ -9,6 +9,7 @@
 #include "operators/simulate/output_writer.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/spots.hpp"
+#include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/materials/law.hpp"
 
@@ -183,7 +184,7 @@ class Inner {
     model_.mesh = inlay.mesh;
     model_.regions = {inlay.region};
     model_.settings.threads = threads;
-    measurer_ = std::make_unique<const fe::Measurer>(model_);
+    elements_ = fe::make_elements(model_);
     std::vector<double> own(ties_.size(), 0);
     for (std::size_t n = 0; n < own.size(); ++n)
       follow(n, [&](int node, double weight) { own[n] += weight * side[static_cast<std::size_t>(node)]; });
@@ -193,6 +194,7 @@ class Inner {
   /// Of a displacement of the body's points.
   void add(const Points& displacement, const Vec3& centre, Pull& sum) const {
     fe::State state;
+    state.elements = elements_;
     state.displacement = Points::Zero(model_.mesh->points.rows(), 3);
     for (std::size_t n = 0; n < ties_.size(); ++n)
       follow(n, [&](int node, double weight) {
@@ -200,8 +202,8 @@ class Inner {
       });
     const Points& X = model_.mesh->points;
     const bool small = model_.regions.front().law->small_strain();
-    add_pull(*model_.mesh, bridges_, measurer_->measure(state, needed), small ? X : X + state.displacement, centre,
-             sum);
+    add_pull(*model_.mesh, bridges_, fe::element_results(model_, state, needed), small ? X : X + state.displacement,
+             centre, sum);
   }
 
  private:
@@ -215,7 +217,7 @@ class Inner {
   const Mesh& body_;
   const std::vector<fe::Tie>& ties_;
   fe::Model model_;
-  std::unique_ptr<const fe::Measurer> measurer_;
+  std::shared_ptr<const fe::Elements> elements_;
   std::vector<Bridge> bridges_;
 };
 

@@ -12,11 +12,10 @@
 namespace msml::simulation {
 namespace {
 
-/// Points, cells and region ids of the results: those of the mesh, or the number of the material region.
+/// Cells and region ids of the results: those of the mesh, or the number of the material region.
 Mesh frame_of(const Simulation& simulation) {
   const Mesh& mesh = *simulation.body.mesh;
   Mesh frame;
-  frame.points = mesh.points;
   frame.kinds = mesh.kinds;
   frame.offsets = mesh.offsets;
   frame.nodes = mesh.nodes;
@@ -49,7 +48,10 @@ std::string escaped(const std::string& text) {
 }  // namespace
 
 SeriesWriter::SeriesWriter(const Simulation& simulation, const OutputRequest& request, std::filesystem::path folder)
-    : request_(request), folder_(std::move(folder)), stride_(request.every), frame_(frame_of(simulation)) {
+    : request_(request),
+      folder_(std::move(folder)),
+      stride_(request.every),
+      last_(std::make_shared<Mesh>(frame_of(simulation))) {
   const fe::Settings& settings = simulation.model.settings;
   if (settings.integrator == fe::Integrator::static_ && !settings.arc_length.on) stride_ *= settings.load_steps;
 }
@@ -61,13 +63,14 @@ std::string SeriesWriter::file_name(std::size_t number) const {
 }
 
 void SeriesWriter::write(const fe::State& state, StateFields& fields) {
-  auto mesh = std::make_shared<Mesh>(frame_);
-  mesh->points = fields.positions();
-  for (const std::string& name : request_.fields) fields.add_to(*mesh, name);
-  last_ = std::move(mesh);
+  last_->point_fields.clear();
+  last_->cell_fields.clear();
+  last_->points = fields.positions();
+  for (const std::string& name : request_.fields) fields.add_to(*last_, name);
   const std::filesystem::path path = folder_ / file_name(files_.size());
   static const Format format = operators::vtk_xml_grid();
-  write_whole(path, [&](const std::filesystem::path& temporary) { format.write(Value(last_), temporary, ".vtu"); });
+  write_whole(path,
+              [&](const std::filesystem::path& temporary) { format.write(Value(MeshPtr(last_)), temporary, ".vtu"); });
   files_.push_back(path);
   times_.push_back(state.time);
   last_increment_ = state.increment;

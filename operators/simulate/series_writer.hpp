@@ -23,6 +23,7 @@ class SeriesWriter final : public OutputWriter {
   void finish(const fe::State& last, StateFields& fields) override;
   /// The Series that was written.
   Value value() const override;
+  std::size_t bytes() const override { return msml::bytes(Value(std::shared_ptr<const Mesh>(last_))); }
 
  private:
   void write_collection();
@@ -31,9 +32,8 @@ class SeriesWriter final : public OutputWriter {
 
   OutputRequest request_;
   std::filesystem::path folder_;
-  int stride_ = 1;  ///< increments from one state that is asked for to the next
-  Mesh frame_;      ///< cells and regions of every state
-  std::shared_ptr<const Mesh> last_;
+  int stride_ = 1;              ///< increments from one state that is asked for to the next
+  std::shared_ptr<Mesh> last_;  ///< the state written last; before that its cells and regions
   std::vector<double> times_;
   std::vector<std::filesystem::path> files_;
   int last_increment_ = -1;

@@ -54,13 +54,17 @@ bool of_other_program(const std::string& name) {
          });
 }
 
-fe::Preconditioner preconditioner(const Record& record, const std::string& name, Reporter& reporter) {
-  if (const auto known = preconditioners().find(name); known != preconditioners().end()) return known->second;
+/// What is wrong with the name of a preconditioner.
+std::string preconditioner_problem(const Value& value) {
+  const auto* name = std::get_if<std::string>(&value);
+  if (name == nullptr || preconditioners().count(*name) > 0 || of_other_program(*name)) return "";
   std::vector<std::string> names;
   for (const auto& entry : preconditioners()) names.push_back(entry.first);
-  if (!of_other_program(name))
-    refuse(record, fmt::format("preconditioner = '{}' is not one of {}{}", name, fmt::join(names, ", "),
-                               did_you_mean(name, names)));
+  return fmt::format("'{}' is not one of {}{}", *name, fmt::join(names, ", "), did_you_mean(*name, names));
+}
+
+fe::Preconditioner preconditioner(const std::string& name, Reporter& reporter) {
+  if (const auto known = preconditioners().find(name); known != preconditioners().end()) return known->second;
   reporter.note(fmt::format("solver: preconditioner {} belongs to another program; taken as auto", name));
   return fe::Preconditioner::automatic;
 }
@@ -81,6 +85,7 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
   keys.preconditioner = tag.parameter<std::string>(
       "preconditioner",
       {.fallback = "auto",
+       .check = preconditioner_problem,
        .doc = "of conjugate gradients: none, jacobi, blockJacobi, incompleteCholesky, multigrid (solids of "
               "tetrahedra) or auto; names of other programs, written in capitals, count as auto"});
   keys.unit = tag.parameter<std::string>(
@@ -181,7 +186,7 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
   settings.linear_solver = linear == "direct"                            ? fe::LinearSolver::direct
                            : linear == "auto" || linear == "iterativeCG" ? fe::LinearSolver::automatic
                                                                          : fe::LinearSolver::cg;
-  settings.preconditioner = preconditioner(record, record[keys.preconditioner], reporter);
+  settings.preconditioner = preconditioner(record[keys.preconditioner], reporter);
   settings.damping_mass = record[keys.damping_mass];
   settings.damping_stiffness = record[keys.damping_stiffness];
   settings.lumped_mass = record[keys.mass] == "lumped";

@@ -65,17 +65,17 @@ Points StateFields::displacement() const {
 Points StateFields::positions() const { return body_.mesh->points + displacement(); }
 
 const fe::ElementResults& StateFields::law() {
-  if (!law_) law_ = measurer_.measure(state_, {.law = true, .J = false, .rotation = false});
+  if (!law_) law_ = measure({.law = true, .J = false, .rotation = false});
   return *law_;
 }
 
 const fe::ElementResults& StateFields::tensors() {
-  if (!tensors_) tensors_ = measurer_.measure(state_, {.law = false, .J = false, .rotation = false, .tensors = true});
+  if (!tensors_) tensors_ = measure({.law = false, .J = false, .rotation = false, .tensors = true});
   return *tensors_;
 }
 
 std::vector<double> StateFields::J() const {
-  std::vector<double> J = measurer_.measure(state_, {.law = false, .J = true, .rotation = false}).J;
+  std::vector<double> J = measure({.law = false, .J = true, .rotation = false}).J;
   // Cells without unknowns keep their volume.
   for (int c = 0; c < body_.mesh->cell_count(); ++c)
     if (body_.mesh->kinds[static_cast<std::size_t>(c)] != body_.kind) J[static_cast<std::size_t>(c)] = 1;
@@ -94,7 +94,7 @@ std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "greenLagrange") return tensors().green_lagrange;
   if (name == "deformationGradient") return tensors().deformation_gradient;
   if (name == "J") return J();
-  if (name == "fiberStretch") return measurer_.measure(state_, only_fibre_stretch).fibre_stretch;
+  if (name == "fiberStretch") return measure(only_fibre_stretch).fibre_stretch;
   throw Error("no field '" + name + "'", {}, Failure::internal);
 }
 

@@ -13,8 +13,8 @@ namespace msml::simulation {
 /// Fields of a state, each computed when first asked for.
 class StateFields {
  public:
-  StateFields(const fe::Model& model, const Body& body, const fe::Measurer& measurer, const fe::State& state)
-      : model_(model), body_(body), measurer_(measurer), state_(state) {}
+  StateFields(const fe::Model& model, const Body& body, const fe::State& state)
+      : model_(model), body_(body), state_(state) {}
 
   /// Points of the mesh in the state: X + u; points of no element stay.
   Points positions() const;
@@ -24,7 +24,9 @@ class StateFields {
   /// meshes carry it anyway; scalar problems add "value" in the place of "displacement".
   void add_to(Mesh& mesh, const std::string& name);
   /// Of all cells, what a request for measures of the elements asks for.
-  fe::ElementResults measure(const fe::ElementRequest& request) const { return measurer_.measure(state_, request); }
+  fe::ElementResults measure(const fe::ElementRequest& request) const {
+    return fe::element_results(model_, state_, request);
+  }
 
  private:
   bool mixed() const { return model_.formulation == fe::Formulation::mixed; }
@@ -39,7 +41,6 @@ class StateFields {
 
   const fe::Model& model_;
   const Body& body_;
-  const fe::Measurer& measurer_;
   const fe::State& state_;
   std::optional<fe::ElementResults> law_, tensors_;
 };

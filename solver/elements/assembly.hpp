@@ -2,6 +2,7 @@
 // All elements of a model, ready for assembly: batches of eight, coloured chunks, precomputed positions.
 #pragma once
 #include <array>
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -31,6 +32,7 @@ struct Numbering {
   int body_nodes() const { return static_cast<int>(node_of.size()); }
   int nodes() const { return body_nodes() + static_cast<int>(pressure_of.size()); }
   bool mixed() const { return !pressure_of.empty(); }
+  std::size_t bytes() const;  ///< held beside the mesh
 };
 Numbering number(const Model& model);
 
@@ -74,6 +76,9 @@ struct ElementPoints {
   Lanes volume_stress{};  ///< lane k: p in the stress P = d(rest)/dF + p dg/dF of elements that split the law
 };
 
+/// Told the place of an element in Numbering::elements and what its points are.
+using PointsVisitor = std::function<void(std::size_t element, const ElementPoints& points)>;
+
 /// Elements of one kind. Sums are added in an order fixed by the mesh alone: results are equal bit for bit for every
 /// number of threads. Elements of a chunk are added by one thread; chunks of one colour share no node.
 class Elements {
@@ -83,13 +88,15 @@ class Elements {
   virtual Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const = 0;
   /// mass += consistent (or lumped) mass with the regions' densities.
   virtual void add_mass(bool lumped, ScalarMatrix& mass) const = 0;
-  /// Displacement gradients of every element of numbering().elements, in that order.
-  virtual std::vector<ElementPoints> points(const Vector& u) const = 0;
+  /// Calls `visit` once for every element of numbering().elements with its displacement gradients, from several
+  /// threads, in no order.
+  virtual void visit_points(const Vector& u, const PointsVisitor& visit) const = 0;
   /// For materials with a history: called before the increments of a time step of dt, and when its end is accepted.
   virtual void begin_step(double /*dt*/) {}
   virtual void end_step(const Vector& /*u*/) {}
   /// Their stress at the end of the last step, see State::history_stress; null where all regions are elastic.
   virtual std::shared_ptr<const std::vector<double>> history_stress() const { return nullptr; }
+  virtual std::size_t bytes() const = 0;  ///< held beside the mesh and the pattern
   virtual const Numbering& numbering() const = 0;
   virtual const PatternPtr& pattern() const = 0;
 };

@@ -17,11 +17,9 @@ constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (
 /// values[3 n] for the nodes a of eight elements.
 template <class Batch>
 Lanes gather(const Batch& batch, int a, const double* values) {
-  alignas(Lanes) double out[lanes];
-  for (int lane = 0; lane < lanes; ++lane) out[lane] = values[3 * batch.node[lane][a]];
-  Lanes result;
-  std::memcpy(&result, out, sizeof result);
-  return result;
+  static_assert(lanes == 8);
+  const auto value = [&](int lane) { return values[3 * batch.node[lane][a]]; };
+  return Lanes{value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
 }
 
 /// a . b of two vectors of `dimension` lanes.
@@ -96,6 +94,21 @@ inline void note(const Lanes& energy, const Lanes& J, int count, const int* elem
     }
   }
 }
+
+/// The same for several points of eight elements: collected lane by lane, told once.
+struct Notes {
+  Lanes energy{}, J = lanes_of(std::numeric_limits<double>::infinity());
+  Lanes sound{};  ///< zero as long as all numbers are finite
+  void add(const Lanes& weighted_energy, const Lanes& ratio) {
+    energy += weighted_energy;
+    J = ratio < J ? ratio : J;
+    sound += 0.0 * (weighted_energy + ratio);
+  }
+  void tell(int count, const int* elements, Assembled& found) const {
+    note(energy, J, count, elements, found);
+    for (int lane = 0; lane < count; ++lane) found.finite = found.finite && sound[lane] == 0;
+  }
+};
 
 /// Adds what another part of the elements gave.
 inline void merge(Assembled& sum, const Assembled& part) {

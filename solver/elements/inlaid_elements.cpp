@@ -69,6 +69,12 @@ class Inner {
     }
   }
 
+  std::size_t bytes() const {
+    std::size_t sum = elements_->bytes() + holders_.size() * sizeof(Holders);
+    for (const Holders& holders : holders_) sum += holders.size() * sizeof(Holder);
+    return sum;
+  }
+
  private:
   template <class Visit>
   void for_holders(const Visit& visit) const {
@@ -114,10 +120,15 @@ class InlaidElements final : public Elements {
     body_->add_mass(lumped, mass);
     for (const Inner& inner : inner_) inner.add_mass(lumped, mass);
   }
-  std::vector<ElementPoints> points(const Vector& u) const override { return body_->points(u); }
+  void visit_points(const Vector& u, const PointsVisitor& visit) const override { body_->visit_points(u, visit); }
   void begin_step(double dt) override { body_->begin_step(dt); }
   void end_step(const Vector& u) override { body_->end_step(u); }
   std::shared_ptr<const std::vector<double>> history_stress() const override { return body_->history_stress(); }
+  std::size_t bytes() const override {
+    std::size_t sum = body_->bytes();
+    for (const Inner& inner : inner_) sum += inner.bytes();
+    return sum;
+  }
   const Numbering& numbering() const override { return body_->numbering(); }
   const PatternPtr& pattern() const override { return body_->pattern(); }
 

@@ -79,7 +79,7 @@ struct MixedElements::Values {
   Lanes p;
 };
 
-MixedElements::MixedElements(const Model& model) : numbering_(number(model)), positions_(model.mesh->points) {
+MixedElements::MixedElements(const Model& model) : numbering_(number(model)) {
   const Rule<3> rule = four_point_rule();
   for (std::size_t q = 0; q < rule.size(); ++q) {
     reference_gradients_[q] = Tetrahedron<body>::gradients(rule[q].xi);
@@ -122,7 +122,7 @@ void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vecto
         batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
     const int* ids = cells_.data() + body * e;
     for (std::size_t q = 0; q < rule.size(); ++q) {
-      const Mat3 J = jacobian<3, body>(positions_, ids, rule[q].xi), inverse = J.inverse();
+      const Mat3 J = jacobian<3, body>(positions(), ids, rule[q].xi), inverse = J.inverse();
       for (int k = 0; k < 9; ++k) batch.point[q].inverse.c[k][lane] = inverse(k / 3, k % 3);
       batch.point[q].weight[lane] = lane < batch.count ? rule[q].weight * J.determinant() : 0.0;
     }
@@ -215,7 +215,7 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
     for (int lane = 0; lane < batch.count; ++lane) {
       const int* ids = cells_.data() + body * (batch.first + lane);
       ElementMass<body> M =
-          consistent_mass<3, body>(positions_, ids, densities_[static_cast<std::size_t>(batch.region)]);
+          consistent_mass<3, body>(positions(), ids, densities_[static_cast<std::size_t>(batch.region)]);
       if (lumped) M = lumped_mass<body>(M);
       for (int a = 0; a < body; ++a)
         for (int b = 0; b < body; ++b)
@@ -223,26 +223,29 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
     }
 }
 
-std::vector<ElementPoints> MixedElements::points(const Vector& u) const {
-  std::vector<ElementPoints> found(numbering_.elements.size());
+std::size_t MixedElements::bytes() const {
+  return numbering_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
+}
+
+void MixedElements::visit_points(const Vector& u, const PointsVisitor& visit) const {
   const Rule<3> rule = four_point_rule();
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     const MixedBatch& batch = batches_[b];
+    ElementPoints found[lanes] = {};
     for (int q = 0; q < MixedBatch::points; ++q) {
       const Values at = values(batch, q, u);
       for (int lane = 0; lane < batch.count; ++lane) {
-        ElementPoints& out = found[static_cast<std::size_t>(batch.first + lane)];
-        if (q == 0) out = {};
+        ElementPoints& out = found[lane];
         const int* ids = cells_.data() + body * (batch.first + lane);
         out.count = q + 1;
-        out.place[q] = place<3, body>(positions_, ids, rule[static_cast<std::size_t>(q)].xi);
+        out.place[q] = place<3, body>(positions(), ids, rule[static_cast<std::size_t>(q)].xi);
         out.weight[q] = batch.point[q].weight[lane];
         out.volume_stress[q] = at.p[lane];
         for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = at.H.c[k][lane];
       }
     }
+    for (int lane = 0; lane < batch.count; ++lane) visit(static_cast<std::size_t>(batch.first + lane), found[lane]);
   });
-  return found;
 }
 
 }  // namespace msml::fe

@@ -33,11 +33,13 @@ class MixedElements final : public Elements {
   explicit MixedElements(const Model& model);
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
-  std::vector<ElementPoints> points(const Vector& u) const override;
+  void visit_points(const Vector& u, const PointsVisitor& visit) const override;
+  std::size_t bytes() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
  private:
+  const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   struct Values;
   void make_batches(const Model& model, const std::vector<int>& element_nodes);
   void fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const;
@@ -47,7 +49,6 @@ class MixedElements final : public Elements {
 
   Numbering numbering_;
   PatternPtr pattern_;
-  Points positions_;        ///< reference positions of the mesh
   std::vector<int> cells_;  ///< mesh points of the ten nodes of each element of numbering()
   std::vector<double> densities_;
   std::vector<MixedBatch> batches_;

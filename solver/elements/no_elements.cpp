@@ -11,7 +11,8 @@ class NoElements final : public Elements {
       : numbering_(number(model)), pattern_(make_pattern(numbering_.nodes(), {}, 1, numbering_.links)) {}
   Assembled add_internal(const Vector&, Want, Vector&, BlockMatrix*) const override { return {}; }
   void add_mass(bool, ScalarMatrix&) const override {}
-  std::vector<ElementPoints> points(const Vector&) const override { return {}; }
+  std::size_t bytes() const override { return numbering_.bytes(); }
+  void visit_points(const Vector&, const PointsVisitor&) const override {}
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 

@@ -52,6 +52,8 @@ void order_elements(const Model& model, const Curve& curve, Numbering& numbering
       keys.push_back({static_cast<int>(r), curve.at(centre), e});
     }
   std::sort(keys.begin(), keys.end());
+  numbering.elements.reserve(keys.size());
+  numbering.region_of.reserve(keys.size());
   for (const Keyed& key : keys) {
     numbering.elements.push_back(key.id);
     numbering.region_of.push_back(key.region);
@@ -106,10 +108,12 @@ Numbering number(const Model& model) {
       keys.push_back({0, curve.at(mesh.points.row(point)), point});
     }
   std::sort(keys.begin(), keys.end());
+  numbering.node_of.reserve(keys.size());
   for (const Keyed& key : keys) {
     numbering.number_of[static_cast<std::size_t>(key.id)] = numbering.nodes();
     numbering.node_of.push_back(key.id);
   }
+  numbering.element_nodes.reserve(numbering.elements.size() * static_cast<std::size_t>(nodes));
   for (const int e : numbering.elements)
     for (int a = 0; a < nodes; ++a)
       numbering.element_nodes.push_back(numbering.number_of[static_cast<std::size_t>(mesh.cell(e)[a])]);
@@ -132,6 +136,12 @@ std::vector<std::array<int, 2>> edge_ends(const Numbering& numbering) {
       ends[static_cast<std::size_t>(element[nodes - mids + m])] = {element[edges[m][0]], element[edges[m][1]]};
   }
   return ends;
+}
+
+std::size_t Numbering::bytes() const {
+  const std::size_t integers = elements.size() + region_of.size() + node_of.size() + number_of.size() +
+                               element_nodes.size() + 2 * links.size() + pressure_of.size();
+  return integers * sizeof(int);
 }
 
 Points to_points(const Numbering& numbering, const Vector& values) {

@@ -84,7 +84,7 @@ void add_coupling(const Patch& patch, double factor, const double* d, BlockMatri
 
 }  // namespace
 
-PatchElements::PatchElements(const Model& model) : numbering_(number(model)), positions_(model.mesh->points) {
+PatchElements::PatchElements(const Model& model) : numbering_(number(model)) {
   for (const Region& region : model.regions) densities_.push_back(region.density);
   for (const std::vector<int>& elements : make_patches(numbering_, patch_size)) make_patch(elements, model);
   find_positions();
@@ -127,7 +127,7 @@ void PatchElements::fill(PatchBatch& batch, const Patch& patch, const Model& mod
       const auto place = std::lower_bound(patch.nodes.begin(), patch.nodes.end(), node);
       batch.local[lane][a] = static_cast<int>(place - patch.nodes.begin());
     }
-    const Mat3 J = jacobian<3, 4>(positions_, model.mesh->cell(batch.cell[lane]), {0.25, 0.25, 0.25}),
+    const Mat3 J = jacobian<3, 4>(positions(), model.mesh->cell(batch.cell[lane]), {0.25, 0.25, 0.25}),
                inverse = J.inverse();
     batch.weight[lane] = lane < batch.count ? J.determinant() / 6 : 0.0;
     for (int a = 0; a < 4; ++a)
@@ -189,7 +189,7 @@ void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
       for (int lane = 0; lane < batch.count; ++lane) {
         int ids[4];
         for (int a = 0; a < 4; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
-        ElementMass<4> M = consistent_mass<3, 4>(positions_, ids, densities_[static_cast<std::size_t>(patch.region)]);
+        ElementMass<4> M = consistent_mass<3, 4>(positions(), ids, densities_[static_cast<std::size_t>(patch.region)]);
         if (lumped) M = lumped_mass<4>(M);
         for (int i = 0; i < 4; ++i)
           for (int j = 0; j < 4; ++j) {
@@ -201,8 +201,13 @@ void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
     }
 }
 
-std::vector<ElementPoints> PatchElements::points(const Vector& u) const {
-  std::vector<ElementPoints> found(numbering_.elements.size());
+std::size_t PatchElements::bytes() const {
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(PatchBatch) + patches_.size() * sizeof(Patch);
+  for (const Patch& patch : patches_) sum += (patch.nodes.size() + patch.positions.size()) * sizeof(int);
+  return sum;
+}
+
+void PatchElements::visit_points(const Vector& u, const PointsVisitor& visit) const {
   tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t p) {
     const Patch& patch = patches_[p];
     double gbar = 0;
@@ -212,26 +217,25 @@ std::vector<ElementPoints> PatchElements::points(const Vector& u) const {
       Response volume;
       batch.law.constraint->evaluate(Want::stress, {&H, 1}, {&volume, 1});
       gbar += sum(batch.weight * volume.energy) / patch.volume;
+    }
+    for (int b = 0; b < patch.batches; ++b) {
+      const PatchBatch& batch = batches_[static_cast<std::size_t>(patch.first_batch + b)];
+      const Gradients H = gradient(batch, u);
       for (int lane = 0; lane < batch.count; ++lane) {
-        ElementPoints& out = found[static_cast<std::size_t>(batch.element[lane])];
-        out = {};
+        ElementPoints out = {};
         out.count = 1;
         out.weight[0] = batch.weight[lane];
         out.place[0] = Vec3::Zero();
         for (int a = 0; a < 4; ++a) {
           const auto node = static_cast<std::size_t>(batch.node[lane][a]);
-          out.place[0] += 0.25 * positions_.row(numbering_.node_of[node]).transpose();
+          out.place[0] += 0.25 * positions().row(numbering_.node_of[node]).transpose();
         }
         for (int k = 0; k < 9; ++k) out.gradient.c[k][0] = H.c[k][lane];
+        out.volume_stress[0] = patch.modulus * gbar;
+        visit(static_cast<std::size_t>(batch.element[lane]), out);
       }
     }
-    for (int b = 0; b < patch.batches; ++b) {
-      const PatchBatch& batch = batches_[static_cast<std::size_t>(patch.first_batch + b)];
-      for (int lane = 0; lane < batch.count; ++lane)
-        found[static_cast<std::size_t>(batch.element[lane])].volume_stress[0] = patch.modulus * gbar;
-    }
   });
-  return found;
 }
 
 }  // namespace msml::fe

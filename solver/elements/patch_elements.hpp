@@ -40,11 +40,13 @@ class PatchElements final : public Elements {
   explicit PatchElements(const Model& model);
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
-  std::vector<ElementPoints> points(const Vector& u) const override;
+  void visit_points(const Vector& u, const PointsVisitor& visit) const override;
+  std::size_t bytes() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
  private:
+  const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   void make_patch(const std::vector<int>& elements, const Model& model);
   void fill(PatchBatch& batch, const Patch& patch, const Model& model);
   void find_positions();
@@ -52,7 +54,6 @@ class PatchElements final : public Elements {
 
   Numbering numbering_;
   PatternPtr pattern_;
-  Points positions_;  ///< reference positions of the mesh
   std::vector<double> densities_;
   std::vector<PatchBatch> batches_;
   std::vector<Patch> patches_;

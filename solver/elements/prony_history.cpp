@@ -139,4 +139,9 @@ void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<cons
   }
 }
 
+std::size_t PronyHistory::bytes() const {
+  const std::size_t points = elastic_.size() + fixed_.size() + stress_.size() + parts_.size() * elastic_.size();
+  return points * sizeof(SymmetricLanes) + (prony_.g.size() + prony_.tau.size() + 2 * decay_.size()) * sizeof(double);
+}
+
 }  // namespace msml::fe

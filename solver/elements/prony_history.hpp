@@ -34,6 +34,7 @@ class PronyHistory {
   void apply(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
   /// Takes over the end of the step; `responses` are the elastic ones.
   void end_step(std::span<const Gradients> gradients, std::span<const Response> responses);
+  std::size_t bytes() const;
   /// S at the end of the last step, per point; P for small-strain laws.
   std::span<const SymmetricLanes> stress() const { return stress_; }
 

@@ -15,7 +15,6 @@ template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
       pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes, numbering_.links)),
-      positions_(model.mesh->points),
       thickness_(dimension < 3 ? model.thickness : 1) {
   const Rule<dimension> places = rule();
   for (std::size_t q = 0; q < count; ++q) reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
@@ -39,6 +38,7 @@ Rule<dimension> SimplexElements<dimension, nodes, count>::rule() {
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::make_batches(const Model& model) {
   const int all = static_cast<int>(numbering_.elements.size());
+  batches_.reserve(numbering_.elements.size() / lanes + model.regions.size());
   for (int first = 0; first < all;) {
     Batch batch;
     batch.first = first;
@@ -55,7 +55,7 @@ void SimplexElements<dimension, nodes, count>::make_batches(const Model& model) 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& model) const {
   const Rule<dimension> places = rule();
-  std::vector<std::vector<Vec3>> positions(count);
+  std::vector<std::vector<Vec3>> points(count);
   for (int lane = 0; lane < lanes; ++lane) {
     const std::size_t e = static_cast<std::size_t>(batch.first + std::min(lane, batch.count - 1));
     int ids[nodes];
@@ -66,30 +66,31 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b)
         batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
-    const bool same = straight<dimension, nodes>(positions_, ids);
+    const bool same = straight<dimension, nodes>(positions(), ids);
+    batch.straight = batch.straight && same;
     Jacobian<dimension> J, inverse;
     for (std::size_t q = 0; q < count; ++q) {
       if (q == 0 || !same) {
-        J = jacobian<dimension, nodes>(positions_, ids, places[q].xi);
+        J = jacobian<dimension, nodes>(positions(), ids, places[q].xi);
         inverse = J.inverse();
       }
       for (int k = 0; k < dimension * dimension; ++k)
         batch.points[q].inverse[k][lane] = inverse(k / dimension, k % dimension);
       batch.points[q].weight[lane] = lane < batch.count ? places[q].weight * J.determinant() * thickness_ : 0.0;
-      if (lane < batch.count) positions[q].push_back(place<dimension, nodes>(positions_, ids, places[q].xi));
+      if (lane < batch.count) points[q].push_back(place<dimension, nodes>(positions(), ids, places[q].xi));
     }
   }
   const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
   const auto first = numbering_.elements.begin() + batch.first;
   const std::vector<int> elements(first, first + batch.count);
-  batch.laws = laws_of(model, region, elements, positions);
+  batch.laws = laws_of(model, region, elements, points);
   if (!region.prony.g.empty())
     batch.history = PronyHistory(region.prony, count, batch.laws.laws.front()->small_strain());
 }
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::shape_gradients(const Batch& batch, int q, ShapeGradients& g) const {
-  const Lanes* inverse = batch.points[q].inverse;
+  const Lanes* inverse = batch.inverse(q);
   for (int a = 0; a < nodes; ++a) {
     const auto& r = reference_gradients_[static_cast<std::size_t>(q)][static_cast<std::size_t>(a)];
     for (int k = 0; k < dimension; ++k) {
@@ -100,56 +101,67 @@ void SimplexElements<dimension, nodes, count>::shape_gradients(const Batch& batc
 }
 
 template <int dimension, int nodes, int count>
-Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q, const Vector& u,
-                                                             ShapeGradients& g) const {
-  shape_gradients(batch, q, g);
-  Gradients H{};
-  for (int a = 0; a < nodes; ++a)
-    for (int i = 0; i < dimension; ++i) {
-      const Lanes value = gather(batch, a, u.data() + i);
-      for (int k = 0; k < dimension; ++k) H(i, k) += value * g.g[a][k];
-    }
-  if (dimension == 2) batch.laws.complete(static_cast<std::size_t>(q), H);
+Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q,
+                                                             const NodeValues<dimension, nodes>& u) const {
+  const auto point = static_cast<std::size_t>(q);
+  Gradients H = displacement_gradient<dimension, nodes>(u, batch.inverse(q), reference_gradients_[point]);
+  if (dimension == 2) batch.laws.complete(point, H);
   return H;
 }
 
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch, const Vector& u, Want want,
                                                               Vector& force, BlockMatrix* matrix) const {
-  ShapeGradients g[count];
+  const auto moved = gather_nodes<dimension, nodes>(batch, u);
   Gradients H[count];
   Response response[count];
-  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, u, g[q]);
+  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
   batch.laws.evaluate(want, {H, count}, {response, count});
   if (!batch.history.empty()) batch.history.apply(want, {H, count}, {response, count});
 
-  Assembled found;
-  SimplexResult<dimension, nodes> result{};
+  SimplexResult<dimension, nodes> result;
+  std::fill_n(&result.force[0][0], nodes * dimension, Lanes{});
+  Notes notes;
   for (int q = 0; q < count; ++q) {
     const Lanes w = batch.points[q].weight;
-    add_force<dimension, nodes>(response[q].P, w, g[q], result);
-    if (matrix) add_stiffness<dimension, nodes>(response[q].tangent, w, g[q], result);
-    Tensor<Lanes> F = H[q];
-    for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
-    const Lanes J = determinant(F), energy = w * response[q].energy;
-    for (int lane = 0; lane < batch.count; ++lane) {
-      found.energy += energy[lane];
-      if (!std::isfinite(energy[lane]) || !std::isfinite(J[lane])) found.finite = false;
-      if (J[lane] < found.smallest_J) {
-        found.smallest_J = J[lane];
-        found.smallest_J_element = numbering_.elements[static_cast<std::size_t>(batch.first + lane)];
-      }
-    }
+    add_force<dimension, nodes>(response[q].P, w, batch.inverse(q), reference_gradients_[static_cast<std::size_t>(q)],
+                                result);
+    notes.add(w * response[q].energy, volume_ratio(H[q]));
   }
+  Assembled found;
+  notes.tell(batch.count, numbering_.elements.data() + batch.first, found);
   scatter_force(batch, result, force);
-  if (matrix) scatter_stiffness(batch, result, *matrix);
+  if (!matrix) return found;
+
+  std::fill_n(&result.block[0][0], nodes * (nodes + 1) / 2 * dimension * dimension, Lanes{});
+  for (int q = 0; q < count; ++q) {
+    ShapeGradients g;
+    shape_gradients(batch, q, g);
+    add_stiffness<dimension, nodes>(response[q].tangent, batch.points[q].weight, g, result);
+  }
+  scatter_stiffness(batch, result, *matrix);
   return found;
+}
+
+/// Asks for what add_batch reads of a batch without a matrix: the processor does not guess the gaps between batches.
+template <class Batch>
+void fetch(const Batch& batch) {
+  const auto lines = [](const void* from, std::size_t bytes) {
+    for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(from) + k);
+  };
+  lines(&batch.region, 64);
+  lines(batch.node, sizeof batch.node);
+  lines(batch.points, batch.straight ? sizeof batch.points[0] : sizeof batch.points);
+  lines(&batch.laws, sizeof batch.laws + sizeof batch.history);
 }
 
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
-  return add_by_colour(colours_, [&](std::size_t b) { return add_batch(batches_[b], u, want, force, matrix); });
+  return add_by_colour(colours_, [&](std::size_t b) {
+    if (b + 1 < batches_.size()) fetch(batches_[b + 1]);
+    return add_batch(batches_[b], u, want, force, matrix);
+  });
 }
 
 template <int dimension, int nodes, int count>
@@ -159,7 +171,7 @@ void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatri
       int ids[nodes];
       for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
       ElementMass<nodes> M = consistent_mass<dimension, nodes>(
-          positions_, ids, thickness_ * densities_[static_cast<std::size_t>(batch.region)]);
+          positions(), ids, thickness_ * densities_[static_cast<std::size_t>(batch.region)]);
       if (lumped) M = lumped_mass<nodes>(M);
       for (int k = 0; k < nodes * nodes; ++k)
         mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
@@ -172,27 +184,33 @@ void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatri
 }
 
 template <int dimension, int nodes, int count>
-std::vector<ElementPoints> SimplexElements<dimension, nodes, count>::points(const Vector& u) const {
-  std::vector<ElementPoints> found(numbering_.elements.size());
+void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, const PointsVisitor& visit) const {
   const Rule<dimension> places = rule();
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     const Batch& batch = batches_[b];
-    ShapeGradients g;
+    const auto moved = gather_nodes<dimension, nodes>(batch, u);
+    ElementPoints found[lanes] = {};
     for (int q = 0; q < count; ++q) {
-      const Gradients H = gradient(batch, q, u, g);
+      const Gradients H = gradient(batch, q, moved);
       for (int lane = 0; lane < batch.count; ++lane) {
-        ElementPoints& out = found[static_cast<std::size_t>(batch.first + lane)];
-        if (q == 0) out = {};
+        ElementPoints& out = found[lane];
         int ids[nodes];
         for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
         out.count = q + 1;
-        out.place[q] = place<dimension, nodes>(positions_, ids, places[static_cast<std::size_t>(q)].xi);
+        out.place[q] = place<dimension, nodes>(positions(), ids, places[static_cast<std::size_t>(q)].xi);
         out.weight[q] = batch.points[q].weight[lane];
         for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = H.c[k][lane];
       }
     }
+    for (int lane = 0; lane < batch.count; ++lane) visit(static_cast<std::size_t>(batch.first + lane), found[lane]);
   });
-  return found;
+}
+
+template <int dimension, int nodes, int count>
+std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch);
+  for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
+  return sum;
 }
 
 template <int dimension, int nodes, int count>
@@ -207,10 +225,10 @@ void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     Batch& batch = batches_[b];
     if (batch.history.empty()) return;
-    ShapeGradients g;
+    const auto moved = gather_nodes<dimension, nodes>(batch, u);
     Gradients H[count];
     Response response[count];
-    for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, u, g);
+    for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
     batch.laws.evaluate(Want::stress, {H, count}, {response, count});
     batch.history.end_step({H, count}, {response, count});
   });

@@ -21,7 +21,9 @@ struct SimplexBatch {
   int first = 0;                       ///< place in Numbering::elements of lane 0; the lanes follow
   int node[lanes][nodes];              ///< numbered nodes
   int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
+  bool straight = true;                ///< dxi/dX is the same at all points
   Point points[rule_points];
+  const Lanes* inverse(int q) const { return points[straight ? 0 : q].inverse; }
   BatchLaws laws;
   PronyHistory history;  ///< empty where elastic
 };
@@ -34,10 +36,11 @@ class SimplexElements final : public Elements {
   explicit SimplexElements(const Model& model);
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
-  std::vector<ElementPoints> points(const Vector& u) const override;
+  void visit_points(const Vector& u, const PointsVisitor& visit) const override;
   void begin_step(double dt) override;
   void end_step(const Vector& u) override;
   std::shared_ptr<const std::vector<double>> history_stress() const override;
+  std::size_t bytes() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
@@ -49,20 +52,20 @@ class SimplexElements final : public Elements {
   void shape_gradients(const Batch& batch, int q, ShapeGradients& g) const;
 
  private:
+  const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   static Rule<dimension> rule();
   void make_batches(const Model& model);
   void fill(Batch& batch, const Model& model) const;
-  Gradients gradient(const Batch& batch, int q, const Vector& u, ShapeGradients& g) const;
+  Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
 
   Numbering numbering_;
   PatternPtr pattern_;
-  Points positions_;  ///< reference positions of the mesh
   std::vector<double> densities_;
   double thickness_ = 1;
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
-  std::array<std::array<std::array<double, dimension>, nodes>, count> reference_gradients_;
+  std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
 };
 
 }  // namespace msml::fe

@@ -18,10 +18,60 @@ struct SimplexResult {
   Lanes block[nodes * (nodes + 1) / 2][dimension * dimension];
 };
 
+/// dN_a/dxi of the nodes at one point.
 template <int dimension, int nodes>
-void add_force(const Tensor<Lanes>& P, Lanes w, const SimplexGradients<dimension, nodes>& gradients,
+using ReferenceGradients = std::array<std::array<double, dimension>, nodes>;
+
+/// Displacements of the nodes of eight elements.
+template <int dimension, int nodes>
+struct NodeValues {
+  Lanes u[nodes][dimension];
+};
+template <int dimension, int nodes, class Batch>
+NodeValues<dimension, nodes> gather_nodes(const Batch& batch, const Vector& u) {
+  NodeValues<dimension, nodes> values;
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < dimension; ++i) values.u[a][i] = gather(batch, a, u.data() + i);
+  return values;
+}
+
+/// H = sum_a u_a r_a^T dxi/dX, r_a = dN_a/dxi; `inverse` is dxi/dX row by row.
+template <int dimension, int nodes>
+Gradients displacement_gradient(const NodeValues<dimension, nodes>& values, const Lanes* inverse,
+                                const ReferenceGradients<dimension, nodes>& r) {
+  Gradients H{};
+  for (int i = 0; i < dimension; ++i) {
+    Lanes by_xi[dimension];  // row i of du/dxi
+    for (std::size_t d = 0; d < dimension; ++d) {
+      if constexpr (nodes == dimension + 1) {
+        by_xi[d] = values.u[d + 1][i] - values.u[0][i];
+      } else {
+        by_xi[d] = values.u[0][i] * r[0][d];
+        for (std::size_t a = 1; a < nodes; ++a) by_xi[d] += values.u[a][i] * r[a][d];
+      }
+    }
+    for (int k = 0; k < dimension; ++k)
+      for (int d = 0; d < dimension; ++d) H(i, k) += by_xi[d] * inverse[dimension * d + k];
+  }
+  return H;
+}
+
+/// force_a += w P (dxi/dX)^T r_a.
+template <int dimension, int nodes>
+void add_force(const Tensor<Lanes>& P, Lanes w, const Lanes* inverse, const ReferenceGradients<dimension, nodes>& r,
                SimplexResult<dimension, nodes>& result) {
-  add_force<dimension, nodes>(P, w, gradients.g, result.force);
+  for (int i = 0; i < dimension; ++i) {
+    Lanes by_xi[dimension];
+    for (int d = 0; d < dimension; ++d) by_xi[d] = w * inner<dimension>(P.c + 3 * i, inverse + dimension * d);
+    for (std::size_t d = 0; d < dimension; ++d) {
+      if constexpr (nodes == dimension + 1) {
+        result.force[d + 1][i] += by_xi[d];
+        result.force[0][i] -= by_xi[d];
+      } else {
+        for (std::size_t a = 0; a < nodes; ++a) result.force[a][i] += by_xi[d] * r[a][d];
+      }
+    }
+  }
 }
 
 template <int dimension, int nodes>

@@ -44,7 +44,8 @@ class SingleRotationElements final : public Elements {
   }
 
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }
-  std::vector<ElementPoints> points(const Vector& u) const override { return standard_.points(u); }
+  void visit_points(const Vector& u, const PointsVisitor& visit) const override { standard_.visit_points(u, visit); }
+  std::size_t bytes() const override { return standard_.bytes() + batches_.size() * sizeof(RotationBatch); }
   const Numbering& numbering() const override { return standard_.numbering(); }
   const PatternPtr& pattern() const override { return standard_.pattern(); }
 

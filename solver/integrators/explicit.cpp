@@ -148,7 +148,7 @@ struct Explicit {
 
 void run_explicit(Run& run) {
   const Model& model = run.model;
-  Explicit method{run, BlockMatrix(run.newton.tangent().pattern)};
+  Explicit method{run, BlockMatrix(run.newton.tangent().pattern, 0)};
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);

@@ -154,7 +154,7 @@ bool advance(Stage& stage, double target) {
 
 void run_implicit(Run& run) {
   const Model& model = run.model;
-  BlockMatrix C(run.newton.tangent().pattern);
+  BlockMatrix C(run.newton.tangent().pattern, 0);
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);

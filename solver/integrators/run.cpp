@@ -23,7 +23,8 @@ State Run::state() const {
           now.energies,
           equations.elements().history_stress(),
           to_pressures(numbering, now.u),
-          now.load_factor};
+          now.load_factor,
+          equations.shared_elements()};
 }
 
 void Run::hold(const Step& step, const Mask& fixed) {

@@ -39,6 +39,8 @@ class Cholesky final : public LinearSystem {
       if (!factor_) return failure();
       if (factor_bytes() > memory_) {
         release();
+        lower_ = {};
+        std::vector<double>().swap(values_);
         return LinearStatus::out_of_memory;
       }
       large_ = common_.fl > 2e10;
@@ -58,7 +60,9 @@ class Cholesky final : public LinearSystem {
   }
 
   std::size_t factor_bytes() const override {
-    return factor_ ? (factor_->is_super ? factor_->xsize : factor_->nzmax) * sizeof(double) : 0;
+    const std::size_t gathered = values_.size() * (sizeof(double) + sizeof(std::size_t) + sizeof(int)) +
+                                 2 * static_cast<std::size_t>(lower_.size()) * sizeof(int);
+    return gathered + (factor_ ? (factor_->is_super ? factor_->xsize : factor_->nzmax) * sizeof(double) : 0);
   }
 
  private:

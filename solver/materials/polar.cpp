@@ -9,21 +9,32 @@
 namespace msml::fe {
 namespace {
 
-/// One scaled Newton step; returns the largest change of an entry in any lane.
-double newton_step(Tensor<Lanes>& X) {
+Lanes larger(const Lanes& a, const Lanes& b) { return a > b ? a : b; }
+
+double largest(Lanes a) {
+  for (int half = lanes / 2; half > 0; half /= 2)
+    for (int i = 0; i < half; ++i) a[i] = a[i] > a[i + half] ? a[i] : a[i + half];
+  return a[0];
+}
+
+/// One Newton step, scaled where that brings the stretches together; returns the largest change of an entry in any
+/// lane.
+double newton_step(Tensor<Lanes>& X, bool scaled) {
   const Tensor<Lanes> cof = cofactor(X);
   const Lanes inverse_det = 1.0 / determinant(X, cof);
-  const Lanes inverse_norm2 = square_sum(cof) * inverse_det * inverse_det;
-  const Lanes g = root(root(inverse_norm2 / square_sum(X)));
-  const Lanes a = 0.5 * g, b = 0.5 * inverse_det / g;
-  double change = 0;
+  Lanes a = lanes_of(0.5), b = 0.5 * inverse_det;
+  if (scaled) {
+    const Lanes g = root(root(square_sum(cof) * inverse_det * inverse_det / square_sum(X)));
+    a *= g;
+    b /= g;
+  }
+  Lanes change{};
   for (int k = 0; k < 9; ++k) {
-    const Lanes next = a * X.c[k] + b * cof.c[k];
-    const Lanes difference = next - X.c[k];
-    for (int i = 0; i < lanes; ++i) change = std::max(change, std::abs(difference[i]));
+    const Lanes next = a * X.c[k] + b * cof.c[k], difference = next - X.c[k];
+    change = larger(difference < 0.0 ? -difference : difference, change);
     X.c[k] = next;
   }
-  return change;
+  return largest(change);
 }
 
 }  // namespace
@@ -38,22 +49,20 @@ Mat3 polar_rotation(const Mat3& F) {
 Tensor<Lanes> polar_rotation(const Tensor<Lanes>& F) {
   // A cube has det^2 / |F|^6 = 1/27; below 1e-4 of that the iteration would lose digits.
   const Lanes norm2 = square_sum(F), det = determinant(F);
-  bool hard[lanes], any_hard = false;
-  for (int i = 0; i < lanes; ++i) {
-    hard[i] = !(det[i] > 0 && 27 * det[i] * det[i] > 1e-4 * norm2[i] * norm2[i] * norm2[i]);
-    any_hard = any_hard || hard[i];
-  }
+  const auto easy = (det > 0.0) & (27 * det * det > 1e-4 * norm2 * norm2 * norm2);
+  const bool any_hard = !(largest(easy ? lanes_of(0) : lanes_of(1)) < 1);
   Tensor<Lanes> X = F;
   if (any_hard)
     for (int i = 0; i < lanes; ++i)
-      if (hard[i])
+      if (!easy[i])
         for (int k = 0; k < 9; ++k) X.c[k][i] = k % 4 == 0 ? 1 : 0;
-  // Convergence is quadratic: a change below 1e-8 leaves an error of 1e-16.
-  for (int iteration = 0; iteration < 20; ++iteration)
-    if (newton_step(X) < 1e-8) break;
+  // Convergence is quadratic: a change below 1e-8 leaves an error of 1e-16. Near the end scaling changes nothing.
+  constexpr double near = 0.3;
+  double change = 1;
+  for (int iteration = 0; iteration < 20 && !(change < 1e-8); ++iteration) change = newton_step(X, change > near);
   if (any_hard)
     for (int i = 0; i < lanes; ++i) {
-      if (!hard[i]) continue;
+      if (easy[i]) continue;
       Mat3 f;
       for (int k = 0; k < 9; ++k) f(k / 3, k % 3) = F.c[k][i];
       const Mat3 r = f.allFinite() ? polar_rotation(f) : Mat3::Identity();

@@ -120,15 +120,6 @@ TEST(Solver, OldNamesAreAcceptedWithANoteEach) {
                           "solver: preconditioner SGAUSS_SEIDEL belongs to another program; taken as auto"));
 }
 
-TEST(Solver, OtherPreconditionersAreRefused) {
-  const Language language;
-  Scene scene = cube(language);
-  scene.solver = {{"preconditioner", std::string("blockJacobbi")}};
-  EXPECT_EQ(message(scene, language),
-            "scene.xml:7: solver: preconditioner = 'blockJacobbi' is not one of auto, blockJacobi, incompleteCholesky, "
-            "jacobi, multigrid, none (did you mean 'blockJacobi'?)");
-}
-
 TEST(Step, DefaultsAreThoseOfMsml) {
   const Language language;
   Listener listener;

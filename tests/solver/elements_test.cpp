@@ -5,6 +5,7 @@
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
 #include "solver/elements/mass.hpp"
+#include "tests/solver/element_points.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace msml::fe {
@@ -137,7 +138,7 @@ TEST(Tet10, CurvedElementsFillTheBall) {
     const Model model = make_model(sphere_octant(n, 1, 2, CellKind::tet10), {});
     const auto elements = make_elements(model);
     double volume = 0;
-    for (const ElementPoints& e : elements->points(Vector::Zero(3 * elements->numbering().nodes())))
+    for (const ElementPoints& e : points_of(*elements, Vector::Zero(3 * elements->numbering().nodes())))
       for (int q = 0; q < e.count; ++q) volume += e.weight[q];
     const double error = std::abs(volume - M_PI / 6 * 7);
     if (n == 4) {
@@ -160,13 +161,18 @@ TEST(Numbering, SkipsPointsOutsideElements) {
   EXPECT_EQ(to_vector(numbering, to_points(numbering, values)), values);
 }
 
-TEST(Chunks, OfOneColourShareNoNode) {
-  const Model model = make_model(box_mesh(10, 10, 10, {1, 1, 1}, CellKind::tet4), {});
-  const Numbering numbering = number(model);
+std::vector<std::vector<int>> batches_of(const Numbering& numbering) {
   std::vector<std::vector<int>> batches;
   for (std::size_t e = 0; e < numbering.element_nodes.size(); e += 32)
     batches.emplace_back(numbering.element_nodes.begin() + static_cast<long>(e),
                          numbering.element_nodes.begin() + static_cast<long>(e) + 32);
+  return batches;
+}
+
+TEST(Chunks, OfOneColourShareNoNode) {
+  const Model model = make_model(box_mesh(10, 10, 10, {1, 1, 1}, CellKind::tet4), {});
+  const Numbering numbering = number(model);
+  const auto batches = batches_of(numbering);
   std::size_t seen = 0;
   for (const auto& chunks : colour_chunks(batches, numbering.nodes())) {
     std::map<int, int> owner;
@@ -178,6 +184,19 @@ TEST(Chunks, OfOneColourShareNoNode) {
         }
   }
   EXPECT_EQ(seen, batches.size());
+}
+
+// Two threads wait for each other at the end of each colour: nothing much is lost where each has enough to do.
+TEST(Chunks, OfAllColoursAreAboutAsMany) {
+  for (const int n : {6, 10, 16}) {
+    const Model model = make_model(box_mesh(n, n, n, {1, 1, 1}, CellKind::tet4), {});
+    const Numbering numbering = number(model);
+    const auto colours = colour_chunks(batches_of(numbering), numbering.nodes());
+    std::size_t least = 1000000, all = 0;
+    for (const auto& chunks : colours) least = std::min(least, chunks.size()), all += chunks.size();
+    EXPECT_GE(least, 4u) << n;
+    EXPECT_GE(static_cast<double>(least), 0.6 * static_cast<double>(all) / static_cast<double>(colours.size())) << n;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "msml/core/error.hpp"
 #include "solver/equations.hpp"
+#include "tests/solver/element_points.hpp"
 #include "tests/solver/law_by_name.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
@@ -80,7 +81,7 @@ TEST(FollowerPressure, OnAClosedSurfaceHasNoResultantAndWorksOnTheVolume) {
     const auto volume = [&](const Vector& w) {
       // The divergence theorem over tetrahedra that share all nodes: exact for tet4 by its constant J.
       double sum = 0;
-      for (const ElementPoints& e : equations.elements().points(w))
+      for (const ElementPoints& e : points_of(equations.elements(), w))
         for (int q = 0; q < e.count; ++q) {
           Mat3 F = Mat3::Identity();
           for (int k = 0; k < 9; ++k) F(k / 3, k % 3) += e.gradient.c[k][q];

@@ -5,19 +5,23 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "solver/linear/multigrid/free_blocks.hpp"
+
 namespace msml::fe {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Frobenius norm of each block.
-template <int B>
-std::vector<float> strengths(const Blocks<double, B, B>& A) {
-  std::vector<float> norms(A.sparsity.columns.size());
-  for_rows(A.sparsity.rows(), 1024, [&](int r) {
-    for (int p = A.sparsity.offsets[at(r)]; p < A.sparsity.offsets[at(r + 1)]; ++p) {
-      double sum = 0;
-      for (std::size_t k = 0; k < B * B; ++k) sum += A.block(p)[k] * A.block(p)[k];
+template <int B, class Matrix>
+std::vector<float> strengths(const Matrix& A) {
+  const SparsityView view = A.view();
+  std::vector<float> norms(view.columns.size());
+  for_rows(view.rows(), 1024, [&](int r) {
+    for (int p = view.offsets[at(r)]; p < view.offsets[at(r + 1)]; ++p) {
+      double block[B * B], sum = 0;
+      A.copy(p, r, block);
+      for (const double entry : block) sum += entry * entry;
       norms[at(p)] = static_cast<float>(std::sqrt(sum));
     }
   });
@@ -26,7 +30,7 @@ std::vector<float> strengths(const Blocks<double, B, B>& A) {
 
 /// Calls body(neighbour, strength) for the strong neighbours of a node.
 template <class Body>
-void for_strong(const Sparsity& A, const std::vector<float>& norms, const std::vector<float>& own, int n,
+void for_strong(const SparsityView& A, const std::vector<float>& norms, const std::vector<float>& own, int n,
                 const Body& body) {
   constexpr float threshold = 0.02f;
   for (int p = A.offsets[at(n)]; p < A.offsets[at(n + 1)]; ++p) {
@@ -37,11 +41,11 @@ void for_strong(const Sparsity& A, const std::vector<float>& norms, const std::v
 
 }  // namespace
 
-template <int B>
-Aggregates aggregate(const Blocks<double, B, B>& A, const std::vector<char>& skip) {
-  const Sparsity& sparsity = A.sparsity;
+template <int B, class Matrix>
+Aggregates aggregate(const Matrix& A, const std::vector<char>& skip) {
+  const SparsityView sparsity = A.view();
   const int nodes = sparsity.rows();
-  const std::vector<float> norms = strengths(A);
+  const std::vector<float> norms = strengths<B>(A);
   std::vector<float> own(at(nodes), 0);
   for (int r = 0; r < nodes; ++r)
     for (int p = sparsity.offsets[at(r)]; p < sparsity.offsets[at(r + 1)]; ++p)
@@ -75,10 +79,10 @@ Aggregates aggregate(const Blocks<double, B, B>& A, const std::vector<char>& ski
   return groups;
 }
 
-template <int B>
-Blocks<double, B, 6> prolongation(const Blocks<double, B, B>& A, const std::vector<double>& inverse, double radius,
-                                  const Aggregates& groups, const Modes& modes, Modes& coarse) {
-  const int nodes = A.sparsity.rows();
+template <int B, class Matrix>
+Blocks<float, B, 6> prolongation(const Matrix& A, const std::vector<double>& inverse, double radius,
+                                 const Aggregates& groups, const Modes& modes, Modes& coarse) {
+  const int nodes = A.view().rows();
   std::vector<std::vector<int>> members(at(groups.count));
   Blocks<double, B, 6> tentative;
   tentative.sparsity.width = groups.count;
@@ -115,33 +119,84 @@ Blocks<double, B, 6> prolongation(const Blocks<double, B, B>& A, const std::vect
     for (int m = 0; m < 6; ++m)
       for (int i = 0; i < 6; ++i) coarse[36 * at(g) + static_cast<std::size_t>(6 * m + i)] = R(i, m);
   });
-  Blocks<double, B, 6> P;
-  P.sparsity = product_sparsity(A.sparsity, tentative.sparsity);
+  Blocks<float, B, 6> P;
+  P.sparsity = product_sparsity(A.view(), tentative.sparsity);
   P.allocate();
-  multiply(A, tentative, P);
   const double omega = 4.0 / 3 / radius;
+  Places places = places_of(P.sparsity);
+  tbb::enumerable_thread_specific<std::vector<double>> buffers;
   for_rows(nodes, 256, [&](int n) {
     const Eigen::Map<const Eigen::Matrix<double, B, B>> D(inverse.data() + B * B * at(n));
-    for (int p = P.sparsity.offsets[at(n)]; p < P.sparsity.offsets[at(n + 1)]; ++p) {
-      Eigen::Map<Eigen::Matrix<double, B, 6>> block(P.block(p));
-      block = -omega * (D * block).eval();
-      if (P.sparsity.columns[at(p)] == groups.of[at(n)])
+    std::vector<int>& place = places.local();
+    std::vector<double>& row = buffers.local();
+    const int first = P.sparsity.offsets[at(n)], count = P.sparsity.offsets[at(n + 1)] - first;
+    note_places(P.sparsity, n, 0, place);
+    row.assign(6 * B * at(count), 0.0);
+    add_row<B>(A, n, tentative, place, row.data());
+    for (int p = 0; p < count; ++p) {
+      Eigen::Matrix<double, B, 6> block = -omega * (D * Eigen::Map<Eigen::Matrix<double, B, 6>>(&row[6 * B * at(p)]));
+      if (P.sparsity.columns[at(first + p)] == groups.of[at(n)])
         block += Eigen::Map<const Eigen::Matrix<double, B, 6>>(tentative.block(tentative.sparsity.offsets[at(n)]));
+      Eigen::Map<Eigen::Matrix<float, B, 6>>(P.block(first + p)) = block.template cast<float>();
     }
   });
   return P;
 }
 
+namespace {
+
+/// coarse += the share of the rows [first, last) of A P in P^T (A P), whose blocks lie at `rows`.
 template <int B>
-void galerkin(const Blocks<double, B, B>& A, const Blocks<double, B, 6>& P, const Blocks<double, 6, B>& P_transposed,
+void add_strip(const Blocks<float, 6, B>& P_transposed, const Sparsity& AP, int first, int last,
+               const std::vector<double>& rows, Places& places, Blocks<double, 6, 6>& coarse) {
+  const int base = AP.offsets[at(first)];
+  const Sparsity& PT = P_transposed.sparsity;
+  for_rows(PT.rows(), 64, [&](int c) {
+    const auto begin = PT.columns.begin() + PT.offsets[at(c)], end = PT.columns.begin() + PT.offsets[at(c + 1)];
+    const auto from = std::lower_bound(begin, end, first), to = std::lower_bound(from, end, last);
+    if (from == to) return;
+    std::vector<int>& place = places.local();
+    note_places(coarse.sparsity, c, coarse.sparsity.offsets[at(c)], place);
+    for (auto n = from; n != to; ++n) {
+      double a[6 * B];
+      P_transposed.copy(static_cast<int>(n - PT.columns.begin()), c, a);
+      for (int q = AP.offsets[at(*n)]; q < AP.offsets[at(*n + 1)]; ++q) {
+        const double* b = &rows[6 * B * at(q - base)];
+        double* out = coarse.block(place[at(AP.columns[at(q)])]);
+        for (int j = 0; j < 6; ++j)
+          for (int m = 0; m < B; ++m)
+            for (int i = 0; i < 6; ++i) out[6 * j + i] += a[6 * m + i] * b[B * j + m];
+      }
+    }
+  });
+}
+
+}  // namespace
+
+template <int B, class Matrix>
+void galerkin(const Matrix& A, const Blocks<float, B, 6>& P, const Blocks<float, 6, B>& P_transposed,
               Blocks<double, 6, 6>& coarse) {
-  Blocks<double, B, 6> AP;
-  AP.sparsity = product_sparsity(A.sparsity, P.sparsity);
-  AP.allocate();
-  multiply(A, P, AP);
-  if (coarse.sparsity.rows() == 0) coarse.sparsity = product_sparsity(P_transposed.sparsity, AP.sparsity);
+  constexpr int strip = 2048;  // rows of A P that are held at once
+  const int nodes = A.view().rows();
+  const Sparsity AP = product_sparsity(A.view(), P.sparsity);
+  if (coarse.sparsity.rows() == 0) coarse.sparsity = product_sparsity(P_transposed.view(), AP);
   coarse.allocate();
-  multiply(P_transposed, AP, coarse);
+  int most = 0;
+  for (int first = 0; first < nodes; first += strip)
+    most = std::max(most, AP.offsets[at(std::min(nodes, first + strip))] - AP.offsets[at(first)]);
+  std::vector<double> rows(6 * B * at(most));
+  Places places = places_of(AP);
+  for (int first = 0; first < nodes; first += strip) {
+    const int last = std::min(nodes, first + strip), base = AP.offsets[at(first)];
+    for_rows(last - first, 64, [&](int r) {
+      std::vector<int>& place = places.local();
+      const int begin = AP.offsets[at(first + r)] - base, end = AP.offsets[at(first + r + 1)] - base;
+      std::fill(rows.begin() + 6 * B * begin, rows.begin() + 6 * B * end, 0.0);
+      note_places(AP, first + r, begin, place);
+      add_row<B>(A, first + r, P, place, rows.data());
+    });
+    add_strip(P_transposed, AP, first, last, rows, places, coarse);
+  }
   for_rows(coarse.sparsity.rows(), 256, [&](int r) {
     for (int p = coarse.sparsity.offsets[at(r)]; p < coarse.sparsity.offsets[at(r + 1)]; ++p)
       for (int i = 0; i < 6 && coarse.sparsity.columns[at(p)] == r; ++i)
@@ -149,15 +204,20 @@ void galerkin(const Blocks<double, B, B>& A, const Blocks<double, B, 6>& P, cons
   });
 }
 
-template Aggregates aggregate(const Blocks<double, 3, 3>&, const std::vector<char>&);
-template Aggregates aggregate(const Blocks<double, 6, 6>&, const std::vector<char>&);
-template Blocks<double, 3, 6> prolongation(const Blocks<double, 3, 3>&, const std::vector<double>&, double,
-                                           const Aggregates&, const Modes&, Modes&);
-template Blocks<double, 6, 6> prolongation(const Blocks<double, 6, 6>&, const std::vector<double>&, double,
-                                           const Aggregates&, const Modes&, Modes&);
-template void galerkin(const Blocks<double, 3, 3>&, const Blocks<double, 3, 6>&, const Blocks<double, 6, 3>&,
-                       Blocks<double, 6, 6>&);
-template void galerkin(const Blocks<double, 6, 6>&, const Blocks<double, 6, 6>&, const Blocks<double, 6, 6>&,
-                       Blocks<double, 6, 6>&);
+using Thin = Blocks<double, 3, 3>;
+using Thick = Blocks<double, 6, 6>;
+
+template Aggregates aggregate<3>(const FreeBlocks&, const std::vector<char>&);
+template Aggregates aggregate<3>(const Thin&, const std::vector<char>&);
+template Aggregates aggregate<6>(const Thick&, const std::vector<char>&);
+template Blocks<float, 3, 6> prolongation<3>(const FreeBlocks&, const std::vector<double>&, double, const Aggregates&,
+                                             const Modes&, Modes&);
+template Blocks<float, 3, 6> prolongation<3>(const Thin&, const std::vector<double>&, double, const Aggregates&,
+                                             const Modes&, Modes&);
+template Blocks<float, 6, 6> prolongation<6>(const Thick&, const std::vector<double>&, double, const Aggregates&,
+                                             const Modes&, Modes&);
+template void galerkin<3>(const FreeBlocks&, const Blocks<float, 3, 6>&, const Blocks<float, 6, 3>&, Thick&);
+template void galerkin<3>(const Thin&, const Blocks<float, 3, 6>&, const Blocks<float, 6, 3>&, Thick&);
+template void galerkin<6>(const Thick&, const Blocks<float, 6, 6>&, const Blocks<float, 6, 6>&, Thick&);
 
 }  // namespace msml::fe

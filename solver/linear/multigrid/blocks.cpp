@@ -4,7 +4,7 @@
 
 namespace msml::fe {
 
-Sparsity product_sparsity(const Sparsity& A, const Sparsity& B) {
+Sparsity product_sparsity(const SparsityView& A, const Sparsity& B) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
   Sparsity C;
   C.width = B.width;

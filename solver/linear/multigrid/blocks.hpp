@@ -18,6 +18,13 @@ struct Sparsity {
   int rows() const { return static_cast<int>(offsets.size()) - 1; }
 };
 
+/// The same of a matrix that someone else holds.
+struct SparsityView {
+  const std::vector<int>& offsets;
+  const std::vector<int>& columns;
+  int rows() const { return static_cast<int>(offsets.size()) - 1; }
+};
+
 /// Rows [0, rows) in pieces of a fixed size, in parallel.
 template <class Body>
 void for_rows(int rows, int piece, const Body& body) {
@@ -38,16 +45,21 @@ struct Blocks {
   std::vector<T> values;
 
   static constexpr std::size_t size = R * C;
+  SparsityView view() const { return {sparsity.offsets, sparsity.columns}; }
   void allocate() { values.assign(size * sparsity.columns.size() + 8, T(0)); }
   T* block(int p) { return values.data() + size * static_cast<std::size_t>(p); }
   const T* block(int p) const { return values.data() + size * static_cast<std::size_t>(p); }
+  /// The block at position p of any row.
+  void copy(int p, int /*row*/, double* out) const { std::copy_n(block(p), size, out); }
+  /// Gives the numbers back.
+  void forget_values() { std::vector<T>().swap(values); }
   std::size_t bytes() const {
     return values.size() * sizeof(T) + (sparsity.columns.size() + sparsity.offsets.size()) * sizeof(int);
   }
 };
 
 /// C = A B.
-Sparsity product_sparsity(const Sparsity& A, const Sparsity& B);
+Sparsity product_sparsity(const SparsityView& A, const Sparsity& B);
 Sparsity transposed(const Sparsity& A);
 
 using Single4 = float __attribute__((vector_size(16)));
@@ -95,30 +107,36 @@ Column<R> block_product(const float* block, const Column<R>& v) {
   return sum;
 }
 
-/// C = A B on a sparsity that holds the product; the order of sums depends on the matrices alone.
-template <class T, int R, int K, int C>
-void multiply(const Blocks<T, R, K>& A, const Blocks<T, K, C>& B, Blocks<T, R, C>& product) {
+/// Adds row r of A B to blocks at out: the one in column c is block number place[c]. A is Blocks, or a view that copies
+/// blocks of R x K numbers.
+template <int R, class Left, class T, int K, int C>
+void add_row(const Left& A, int r, const Blocks<T, K, C>& B, const std::vector<int>& place, double* out) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  std::fill(product.values.begin(), product.values.end(), T(0));
-  tbb::enumerable_thread_specific<std::vector<int>> places(
-      std::vector<int>(at(std::max(1, product.sparsity.width)), -1));
-  const auto row = [&](int r) {
-    std::vector<int>& place = places.local();
-    for (int p = product.sparsity.offsets[at(r)]; p < product.sparsity.offsets[at(r + 1)]; ++p)
-      place[at(product.sparsity.columns[at(p)])] = p;
-    for (int p = A.sparsity.offsets[at(r)]; p < A.sparsity.offsets[at(r + 1)]; ++p) {
-      const T* a = A.block(p);
-      const int k = A.sparsity.columns[at(p)];
-      for (int q = B.sparsity.offsets[at(k)]; q < B.sparsity.offsets[at(k + 1)]; ++q) {
-        const T* b = B.block(q);
-        T* c = product.block(place[at(B.sparsity.columns[at(q)])]);
-        for (int j = 0; j < C; ++j)
-          for (int m = 0; m < K; ++m)
-            for (int i = 0; i < R; ++i) c[R * j + i] += a[R * m + i] * b[K * j + m];
-      }
+  const SparsityView left = A.view();
+  for (int p = left.offsets[at(r)]; p < left.offsets[at(r + 1)]; ++p) {
+    double a[R * K];
+    A.copy(p, r, a);
+    const int k = left.columns[at(p)];
+    for (int q = B.sparsity.offsets[at(k)]; q < B.sparsity.offsets[at(k + 1)]; ++q) {
+      const T* b = B.block(q);
+      double* c = out + static_cast<std::size_t>(R * C) * at(place[at(B.sparsity.columns[at(q)])]);
+      for (int j = 0; j < C; ++j)
+        for (int m = 0; m < K; ++m)
+          for (int i = 0; i < R; ++i) c[R * j + i] += a[R * m + i] * b[K * j + m];
     }
-  };
-  for_rows(A.sparsity.rows(), 64, row);
+  }
+}
+
+/// Room in each thread to note where the columns of a row are.
+using Places = tbb::enumerable_thread_specific<std::vector<int>>;
+inline Places places_of(const Sparsity& sparsity) {
+  return Places(std::vector<int>(static_cast<std::size_t>(std::max(1, sparsity.width)), -1));
+}
+/// place[c] = the number of the block in column c among those of row r, from `first` on.
+inline void note_places(const Sparsity& sparsity, int r, int first, std::vector<int>& place) {
+  for (int p = sparsity.offsets[static_cast<std::size_t>(r)]; p < sparsity.offsets[static_cast<std::size_t>(r) + 1];
+       ++p)
+    place[static_cast<std::size_t>(sparsity.columns[static_cast<std::size_t>(p)])] = first++;
 }
 
 template <class T, int R, int C>
@@ -135,15 +153,6 @@ Blocks<T, C, R> transposed(const Blocks<T, R, C>& A) {
       for (int i = 0; i < R; ++i)
         for (int j = 0; j < C; ++j) b[C * i + j] = a[R * j + i];
     }
-  return B;
-}
-
-/// The same numbers in single precision.
-template <int R, int C>
-Blocks<float, R, C> rounded(const Blocks<double, R, C>& A) {
-  Blocks<float, R, C> B;
-  B.sparsity = A.sparsity;
-  B.values.assign(A.values.begin(), A.values.end());
   return B;
 }
 

@@ -36,7 +36,7 @@ Corners::Corners(const NodeGeometry& geometry, const std::vector<char>& fixed) :
 }
 
 void Corners::restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse) const {
-  const Pattern& pattern = *A.matrix.pattern;
+  const SparsityView pattern = A.view();
   const auto for_columns = [&](int c, const auto& body) {
     for (int k = child_offsets_[at(c)]; k < child_offsets_[at(c) + 1]; ++k) {
       const int n = children_[at(k)];
@@ -72,7 +72,7 @@ void Corners::restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse)
     for_columns(c, [&](int other, int p, int n, double share) {
       const int m = pattern.columns[at(p)];
       double a[9];
-      A.copy(p, n, m, a);
+      A.copy(p, n, a);
       double* out = coarse.block(place[at(other)]);
       for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i)

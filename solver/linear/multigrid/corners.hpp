@@ -18,6 +18,10 @@ class Corners {
   void restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse) const;
   void restrict_vector(const std::vector<float>& fine, std::vector<float>& coarse) const;  ///< P^T
   void add_prolonged(const std::vector<float>& coarse, std::vector<float>& fine) const;    ///< fine += P coarse
+  std::size_t bytes() const {
+    return (node_of_.size() + child_offsets_.size() + children_.size() + 2 * parents_.size()) * sizeof(int) +
+           fixed_.size() + fixed_coarse_.size();
+  }
 
  private:
   struct Parents {

@@ -7,19 +7,30 @@
 namespace msml::fe {
 
 /// A view: rows and columns of fixed unknowns are zero, but for a unit diagonal.
-struct FreeBlocks {
+class FreeBlocks {
+ public:
+  FreeBlocks(const BlockMatrix& A, const Mask& mask) : matrix(A), fixed(mask) {}
   const BlockMatrix& matrix;
   const Mask& fixed;
 
-  Sparsity sparsity() const { return {matrix.pattern->nodes(), matrix.pattern->offsets, matrix.pattern->columns}; }
-  /// The block at position p, in row r and column c, column by column.
-  void copy(int p, int r, int c, double* out) const {
+  SparsityView view() const { return {matrix.pattern->offsets, matrix.pattern->columns}; }
+  /// The block at position p, in row r, column by column.
+  void copy(int p, int r, double* out) const {
     const double* a = matrix.values.data() + 9 * static_cast<std::size_t>(p);
+    const int c = matrix.pattern->columns[static_cast<std::size_t>(p)];
     for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
-        const bool gone = fixed[static_cast<std::size_t>(3 * r + i)] || fixed[static_cast<std::size_t>(3 * c + j)];
-        out[3 * j + i] = !gone ? a[3 * i + j] : (r == c && i == j ? 1.0 : 0.0);
-      }
+      for (int j = 0; j < 3; ++j) out[3 * j + i] = a[3 * i + j];
+    if (!held(r) && !held(c)) return;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        if (fixed[static_cast<std::size_t>(3 * r + i)] || fixed[static_cast<std::size_t>(3 * c + j)])
+          out[3 * j + i] = r == c && i == j ? 1.0 : 0.0;
+  }
+
+ private:
+  bool held(int node) const {
+    const char* mask = fixed.data() + 3 * static_cast<std::size_t>(node);
+    return mask[0] || mask[1] || mask[2];
   }
 };
 

@@ -13,21 +13,20 @@ class Level {
  public:
   using Numbers = std::vector<float>;
 
-  /// Takes the matrix; false if a diagonal block is not positive definite. copy(p, r, c, out) gives the block at
-  /// position p, in row r and column c, column by column.
-  template <class Copy>
-  bool set(const Sparsity& sparsity, const Copy& copy) {
-    matrix_.sparsity = sparsity;
+  /// Takes the matrix, Blocks or a view; false if a diagonal block is not positive definite.
+  template <class Matrix>
+  bool set(const Matrix& A) {
+    const SparsityView view = A.view();
+    matrix_.sparsity = {view.rows(), view.offsets, view.columns};
     matrix_.allocate();
     std::vector<double> diagonals(B * B * static_cast<std::size_t>(nodes()));
     for_rows(nodes(), 512, [&](int r) {
       double block[B * B];
-      for (int p = sparsity.offsets[static_cast<std::size_t>(r)]; p < sparsity.offsets[static_cast<std::size_t>(r) + 1];
-           ++p) {
-        const int c = sparsity.columns[static_cast<std::size_t>(p)];
-        copy(p, r, c, block);
+      for (int p = view.offsets[static_cast<std::size_t>(r)]; p < view.offsets[static_cast<std::size_t>(r) + 1]; ++p) {
+        A.copy(p, r, block);
         std::copy(block, block + B * B, matrix_.block(p));
-        if (c == r) std::copy(block, block + B * B, diagonals.data() + B * B * static_cast<std::size_t>(r));
+        if (view.columns[static_cast<std::size_t>(p)] == r)
+          std::copy(block, block + B * B, diagonals.data() + B * B * static_cast<std::size_t>(r));
       }
     });
     return invert(diagonals);
@@ -42,7 +41,12 @@ class Level {
   void residual(const Numbers& b, const Numbers& x, Numbers& r) const;
   double radius() const { return radius_; }                        ///< largest eigenvalue of inverse(diagonal) A
   const std::vector<double>& inverse() const { return inverse_; }  ///< B x B for each node, column by column
-  std::size_t bytes() const { return matrix_.bytes() + inverse_.size() * 12 + 4 * (direction_.size() * 2); }
+  /// The inverse is not asked for any more.
+  void forget_inverse() { std::vector<double>().swap(inverse_); }
+  std::size_t bytes() const {
+    return matrix_.bytes() + inverse_.size() * sizeof(double) +
+           (inverse_single_.size() + direction_.size() + other_.size()) * sizeof(float);
+  }
 
   int degree = 2;  ///< of the smoother
 

@@ -31,20 +31,11 @@ void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, 
 
 }  // namespace
 
-/// The matrix of the finest grid in single precision; in double too where groups are made from it.
+/// The matrix of the finest grid in single precision.
 bool Multigrid::set_fine(const FreeBlocks& A) {
-  const Sparsity sparsity = A.sparsity();
-  const std::size_t size = 3 * at(sparsity.rows()) + 8;
+  const std::size_t size = 3 * at(A.view().rows()) + 8;
   for (auto* v : {&fine_.b, &fine_.x, &fine_.r}) v->assign(size, 0.0f);
-  if (!corners_) {
-    fine_.matrix.sparsity = sparsity;
-    fine_.matrix.values.resize(9 * sparsity.columns.size() + 8);
-    for_rows(sparsity.rows(), 512, [&](int r) {
-      for (int p = sparsity.offsets[at(r)]; p < sparsity.offsets[at(r + 1)]; ++p)
-        A.copy(p, r, sparsity.columns[at(p)], fine_.matrix.block(p));
-    });
-  }
-  return fine_.level.set(sparsity, [&](int p, int r, int c, double* out) { A.copy(p, r, c, out); });
+  return fine_.level.set(A);
 }
 
 void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<char>& fixed, Modes& modes) const {
@@ -68,56 +59,68 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
   grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
-  const auto copy = [&](int p, int, int, double* out) { std::copy_n(grid.matrix.block(p), B * B, out); };
-  const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix.sparsity, copy);
+  const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
   const std::size_t size = B * at(grid.matrix.sparsity.rows()) + 8;
   for (auto* v : {&grid.b, &grid.x, &grid.r}) v->assign(size, 0.0f);
   return good;
 }
 
-/// Makes the step below a grid, unless it is the last, and the matrix there.
-template <int B>
-bool Multigrid::coarsen(Grid<B>& grid, const std::vector<char>& skip, std::optional<Step<B>>& step, Modes& modes) {
+/// Makes the step below a grid with the matrix A, unless it is the last.
+template <int B, class Matrix>
+bool Multigrid::coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>& skip, std::optional<Step<B>>& step,
+                        Modes& modes) {
   if (grid.solved) return false;
-  if (!step) {
-    if (!fresh_) return false;
-    const Aggregates groups = aggregate(grid.matrix, skip);
-    if (groups.count == 0 || 3 * groups.count > 2 * grid.matrix.sparsity.rows()) return false;
-    Modes coarse;
-    step.emplace();
-    step->P = prolongation(grid.matrix, grid.level.inverse(), grid.level.radius(), groups, modes, coarse);
-    step->restriction = transposed(step->P);
-    step->P_single = rounded(step->P);
-    step->restriction_single = rounded(step->restriction);
-    modes = std::move(coarse);
+  if (!step && fresh_) {
+    const Aggregates groups = aggregate<B>(A, skip);
+    if (groups.count > 0 && 3 * groups.count <= 2 * A.view().rows()) {
+      Modes coarse;
+      step.emplace();
+      step->P = prolongation<B>(A, grid.level.inverse(), grid.level.radius(), groups, modes, coarse);
+      step->restriction = transposed(step->P);
+      modes = std::move(coarse);
+    }
   }
-  return true;
+  grid.level.forget_inverse();
+  return step.has_value();
 }
 
 bool Multigrid::set_matrices(const FreeBlocks& A) {
   if (!set_fine(A)) return false;
-  Grid<3>* last = &fine_;
   if (corners_) {
+    fine_.level.forget_inverse();
     corners_->restrict_matrix(A, linear_.matrix);
     if (!settle(linear_)) return false;
-    last = &linear_;
   }
+  const Mask& fixed = corners_ ? corners_->fixed() : fixed_;
   Modes modes;
   if (fresh_) {
-    std::vector<int> nodes(at(last->matrix.sparsity.rows()));
+    std::vector<int> nodes(fixed.size() / 3);
     for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = corners_ ? corners_->node_of()[n] : static_cast<int>(n);
-    prepare_modes(nodes, corners_ ? corners_->fixed() : fixed_, modes);
+    prepare_modes(nodes, fixed, modes);
   }
-  if (!coarsen(*last, held(corners_ ? corners_->fixed() : fixed_), first_, modes)) return true;
-  if (groups_.empty()) groups_.emplace_back(), steps_.emplace_back();
-  galerkin(last->matrix, first_->P, first_->restriction, groups_[0].matrix);
-  last->matrix.values = {};
+  const bool more = corners_ ? coarsen(linear_, linear_.matrix, held(fixed), first_, modes)
+                             : coarsen(fine_, A, held(fixed), first_, modes);
+  if (more) {
+    if (groups_.empty()) groups_.emplace_back(), steps_.emplace_back();
+    if (corners_)
+      galerkin<3>(linear_.matrix, first_->P, first_->restriction, groups_[0].matrix);
+    else
+      galerkin<3>(A, first_->P, first_->restriction, groups_[0].matrix);
+  }
+  linear_.matrix.forget_values();
+  return !more || set_groups(modes);
+}
+
+/// The grids of groups, of which the first has its matrix.
+bool Multigrid::set_groups(Modes& modes) {
   for (std::size_t k = 0; k < 20; ++k) {
     if (!settle(groups_[k])) return false;
-    if (!coarsen(groups_[k], std::vector<char>(at(groups_[k].matrix.sparsity.rows()), 0), steps_[k], modes)) break;
-    if (groups_.size() == k + 1) groups_.emplace_back(), steps_.emplace_back();
-    galerkin(groups_[k].matrix, steps_[k]->P, steps_[k]->restriction, groups_[k + 1].matrix);
-    groups_[k].matrix.values = {};
+    const std::vector<char> none(at(groups_[k].matrix.sparsity.rows()), 0);
+    const bool more = coarsen(groups_[k], groups_[k].matrix, none, steps_[k], modes);
+    if (more && groups_.size() == k + 1) groups_.emplace_back(), steps_.emplace_back();
+    if (more) galerkin<6>(groups_[k].matrix, steps_[k]->P, steps_[k]->restriction, groups_[k + 1].matrix);
+    groups_[k].matrix.forget_values();
+    if (!more) break;
   }
   return true;
 }
@@ -144,9 +147,9 @@ void Multigrid::descend(Grid<B>& grid, const std::optional<Step<B>>& step, std::
   grid.level.smooth_from_zero(grid.b, grid.x);
   if (step) {
     grid.level.residual(grid.b, grid.x, grid.r);
-    multiply_single(step->restriction_single, grid.r, groups_[below].b, false);
+    multiply_single(step->restriction, grid.r, groups_[below].b, false);
     descend(groups_[below], steps_[below], below + 1);
-    multiply_single(step->P_single, groups_[below].x, grid.x, true);
+    multiply_single(step->P, groups_[below].x, grid.x, true);
   }
   grid.level.smooth(grid.b, grid.x);
 }
@@ -168,11 +171,16 @@ void Multigrid::cycle(std::vector<float>& r, std::vector<float>& z) {
 }
 
 std::size_t Multigrid::bytes() const {
-  std::size_t sum = fine_.level.bytes() + linear_.level.bytes() + coarsest_.bytes();
-  if (first_) sum += 3 * (first_->P_single.bytes() + first_->restriction_single.bytes());
-  for (const Grid<6>& grid : groups_) sum += grid.level.bytes();
-  for (const auto& step : steps_)
-    if (step) sum += 3 * (step->P_single.bytes() + step->restriction_single.bytes());
+  std::size_t sum = coarsest_.bytes() + (corners_ ? corners_->bytes() : 0);
+  const auto add_grid = [&](const auto& grid) {
+    sum += grid.level.bytes() + grid.matrix.bytes() + (grid.b.size() + grid.x.size() + grid.r.size()) * sizeof(float);
+  };
+  const auto add_step = [&](const auto& step) { sum += step ? step->P.bytes() + step->restriction.bytes() : 0; };
+  add_grid(fine_);
+  add_grid(linear_);
+  add_step(first_);
+  for (const Grid<6>& grid : groups_) add_grid(grid);
+  for (const auto& step : steps_) add_step(step);
   return sum;
 }
 

@@ -30,22 +30,22 @@ class Multigrid {
   /// A grid of groups below a grid with B unknowns per node.
   template <int B>
   struct Step {
-    Blocks<double, B, 6> P;
-    Blocks<double, 6, B> restriction;
-    Blocks<float, B, 6> P_single;
-    Blocks<float, 6, B> restriction_single;
+    Blocks<float, B, 6> P;
+    Blocks<float, 6, B> restriction;
   };
   template <int B>
   struct Grid {
-    Blocks<double, B, B> matrix;  ///< emptied after the set-up
+    Blocks<double, B, B> matrix;  ///< of coarser grids, emptied after the set-up
     Level<B> level;
     std::vector<float> b, x, r;
     bool solved = false;  ///< by coarsest_, instead of smoothing
   };
   bool set_matrices(const FreeBlocks& A);
+  bool set_groups(Modes& modes);
   bool set_fine(const FreeBlocks& A);
-  template <int B>
-  bool coarsen(Grid<B>& grid, const std::vector<char>& skip, std::optional<Step<B>>& step, Modes& modes);
+  template <int B, class Matrix>
+  bool coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>& skip, std::optional<Step<B>>& step,
+               Modes& modes);
   template <int B>
   bool settle(Grid<B>& grid);
   template <int B>

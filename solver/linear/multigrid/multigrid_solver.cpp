@@ -63,7 +63,8 @@ class MultigridSolver final : public LinearSystem {
       zero_fixed(fixed_, r_);
       size = std::sqrt(dot(r_, r_));
       if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
-      if (status == LinearStatus::done && size > target && size > 0.5 * before) return LinearStatus::limit;
+      if (status == LinearStatus::done && size > target && size > 0.5 * before)
+        return size <= round_off(x) ? LinearStatus::done : LinearStatus::limit;
       before = size;
     }
     return LinearStatus::done;
@@ -78,9 +79,33 @@ class MultigridSolver final : public LinearSystem {
   }
 
   bool iterative() const override { return true; }
-  std::size_t factor_bytes() const override { return grids_.bytes(); }
+  std::size_t factor_bytes() const override {
+    std::size_t sum = grids_.bytes() + 2 * geometry_.ends.size() * sizeof(geometry_.ends[0]) + fixed_.size();
+    for (const Vector* v : {&geometry_.positions, &geometry_.positions, &displacement_, &reference_, &b_, &r_,
+                            &space_.z, &space_.p, &space_.q})
+      sum += bytes(*v);
+    return sum + (rotations_.size() + single_r_.size() + single_z_.size()) * sizeof(float);
+  }
 
  private:
+  /// Norm of the residual that round-off in A x alone can leave: eps |A| |x| (Higham 2002, section 3.5). No method does
+  /// better.
+  double round_off(const Vector& x) const {
+    const Pattern& pattern = *matrix_->pattern;
+    Vector bound(x.size());
+    for_rows(pattern.nodes(), 512, [&](int r) {
+      double sum[3] = {};
+      for (int p = pattern.offsets[static_cast<std::size_t>(r)]; p < pattern.offsets[static_cast<std::size_t>(r) + 1];
+           ++p)
+        for (std::size_t k = 0; k < 9; ++k)
+          sum[k / 3] += std::abs(matrix_->values[9 * static_cast<std::size_t>(p) + k] *
+                                 x[3 * pattern.columns[static_cast<std::size_t>(p)] + static_cast<int>(k % 3)]);
+      for (int i = 0; i < 3; ++i) bound[3 * r + i] = sum[i];
+    });
+    zero_fixed(fixed_, bound);
+    return std::numeric_limits<double>::epsilon() * std::sqrt(dot(bound, bound));
+  }
+
   LinearStatus set_up() {
     usable_ = stale_ = false;
     const LinearStatus status = grids_.set(*matrix_, fixed_);
