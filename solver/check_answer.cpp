@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/conditions/springs.hpp"
 #include "solver/measure.hpp"
 #include "solver/unknowns.hpp"
 
@@ -19,11 +20,20 @@ Vec3 sum(const Vector& v) {
   return total;
 }
 
+/// What springs do to the body: in internal forces they hide where nothing else holds it.
+Vector spring_forces(const Run& run) {
+  Vector forces = Vector::Zero(run.equations.size());
+  const Equations& equations = run.equations;
+  add_springs(equations.loads(run.now.step).springs, equations.positions(), run.now.u, false, forces, nullptr);
+  return forces;
+}
+
 void check_balance(const Run& run, const Supports& supports, Check& check) {
   const Forces& f = run.between ? *run.between : run.newton.forces();
   Vector residual = f.residual();
   supports.slides.project(residual);
-  check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm()});
+  check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm(),
+                               spring_forces(run).norm()});
   if (check.load_scale > 0) check.residual = free_norm(residual, supports.fixed) / check.load_scale;
   check.sum_loads = sum(f.external);
   check.sum_reactions = sum(run.now.reaction);

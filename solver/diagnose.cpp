@@ -25,6 +25,8 @@ std::string advice(const Run& run, const IncrementResult& result) {
       return "the body buckles or the equilibrium is unstable: try smaller loads, or a dynamic timeIntegration";
     case Stop::linear_solver_limit:
       return "try linearSolver=\"direct\", another preconditioner, a better mesh or poissonRatio further from 0.5";
+    case Stop::step_too_large:
+      return "take dt as small as that, or adaptiveStep=\"true\"";
     case Stop::collapsed:
       return "the body rests with a part turned inside out or crushed to nothing, a trap of the energy: start from a "
              "slightly changed state, take a law that pushes back (neoHookeanMaterial form=\"stable\", or "
@@ -69,16 +71,17 @@ std::string node_text(const Run& run, const IncrementResult& result) {
 
 }  // namespace
 
-void explain(Run& run, const IncrementResult& result, double share) {
+void explain(Run& run, const IncrementResult& result, double share, const std::string& evidence) {
   const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
   const std::string when = share >= 0 ? fmt::format("at {:.4g} of the loads", share)
                                       : fmt::format("in increment {}, from time {:g} with dt = {:g}",
                                                     run.now.increment + 1, run.now.time, step.dt);
   run.residuals = result.residuals;
   run.outcome.stop = result.stop;
-  run.outcome.diagnosis = fmt::format("step {} '{}' stopped {}: {}; residuals {}{}{}; {}", run.now.step + 1, step.name,
-                                      when, name(result.stop), residual_text(result), element_text(run, result),
-                                      node_text(run, result), advice(run, result));
+  run.outcome.diagnosis =
+      fmt::format("step {} '{}' stopped {}: {}{}{}; residuals {}{}{}; {}", run.now.step + 1, step.name, when,
+                  name(result.stop), evidence.empty() ? "" : ": ", evidence, residual_text(result),
+                  element_text(run, result), node_text(run, result), advice(run, result));
 }
 
 }  // namespace msml::fe

@@ -313,7 +313,7 @@ struct ElementResults {
 /// The check after every run, part of the answer (scene-language, section 4).
 struct Check {
   double residual = 0;    ///< ||f_ext - f_int - M a - D v|| over free unknowns, relative to `load_scale`
-  double load_scale = 0;  ///< largest of the norms of external, internal, inertia and reaction forces
+  double load_scale = 0;  ///< largest of the norms of external, internal, inertia, reaction and spring forces
   Vec3 sum_loads = Vec3::Zero(), sum_reactions = Vec3::Zero(), sum_inertia = Vec3::Zero(), sum_damping = Vec3::Zero();
   double balance = 0;                    ///< |loads + reactions - inertia - damping| relative to the largest of them
   double volume = 0, volume_change = 0;  ///< reference volume; (v - V) / V
@@ -338,6 +338,7 @@ enum class Stop {
   out_of_memory,
   collapsed,      ///< equilibrium with det F <= 0 in a law that survives inversion
   unstable_step,  ///< an explicit method with too large a time step
+  step_too_large  ///< an implicit time step that fails where a shorter one from the same state does not
 };
 const char* name(Stop stop);
 

@@ -28,6 +28,8 @@ const char* name(Stop stop) {
       return "collapsed equilibrium";
     case Stop::unstable_step:
       return "unstable time step";
+    case Stop::step_too_large:
+      return "time step too large";
   }
   return "unknown";
 }

@@ -7,14 +7,14 @@
 namespace msml::fe {
 namespace {
 
-IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, double share) {
+IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, double share, bool last_resort) {
   Increment increment{
       run.now.u, path.supports.fixed,  path.supports.at(share, path.time(share)), path.loads(share), {}, nullptr,
       {},        &path.supports.slides};
   run.check_balanced(increment.loads);
   run.equations.begin_step((share - from) * path.duration);
   if (run.equations.has_history()) run.newton.forget();
-  return run.reach(increment);
+  return last_resort ? run.newton.walk(increment) : run.reach(increment);
 }
 
 void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) {
@@ -46,6 +46,9 @@ double growth(const IncrementResult& result, bool adaptive) {
 EquilibriumPath begin_path(Run& run, int step) {
   const Step& now = run.model.steps[static_cast<std::size_t>(step)];
   run.now.step = step;
+  // Springs come and go with steps: the tangent at hand may be that of others.
+  const auto springs = [&](int s) { return s >= 0 && !run.equations.loads(s).springs.empty(); };
+  if (springs(step) || springs(step - 1)) run.newton.forget();
   return {{}, make_supports(now, run.equations.numbering(), run.now.u), run.now.time, now.dt * now.count};
 }
 
@@ -59,7 +62,8 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   while (from < to) {
     const double stop = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
     const double share = from + piece > stop - 1e-12 ? stop : from + piece;
-    const IncrementResult result = try_piece(run, path, from, share);
+    const bool last_resort = piece / 2 < smallest;
+    IncrementResult result = try_piece(run, path, from, share, last_resort);
     if (result.stop == Stop::converged) {
       take(run, path, share, result.u);
       from = share;
@@ -69,9 +73,10 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
     }
     run.newton.forget();
     const bool hopeless = result.stop == Stop::singular || result.stop == Stop::out_of_memory;
-    if (hopeless || run.model.settings.newton_iterations == 1 || piece / 2 < smallest) {
+    if (hopeless || run.model.settings.newton_iterations == 1 || last_resort) {
+      const std::string evidence = find_cause(run, path, share, result);
       run.now = before;
-      explain(run, result, share);
+      explain(run, result, share, evidence);
       return false;
     }
     piece = (share - from) / 2;

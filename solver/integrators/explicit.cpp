@@ -120,7 +120,7 @@ struct Explicit {
     if (centred)
       for (Eigen::Index i = 0; i < target.size(); ++i)
         if (!supports.fixed[static_cast<std::size_t>(i)]) now.v[i] += 0.5 * dt * now.a[i];
-    if (!sound(step, before)) return false;
+    if (!sound(step, before, supports, loads)) return false;
     ++now.increment;
     run.set_reactions(run.newton.forces().residual(), supports);
     run.account(before.u);
@@ -129,17 +129,20 @@ struct Explicit {
   }
 
   /// False where the state cannot be gone on from; the one before is kept then.
-  bool sound(const Step& step, const Motion& before) {
+  bool sound(const Step& step, const Motion& before, const Supports& supports, const ScaledLoads& loads) {
     IncrementResult result;
     result.worst_element = run.newton.forces().found.smallest_J_element;
     result.worst_J = run.newton.forces().found.smallest_J;
     result.stop = run.newton.state_verdict();
-    if (!run.now.a.allFinite() || !run.now.u.allFinite()) result.stop = Stop::diverged;
+    const bool finite = run.now.a.allFinite() && run.now.u.allFinite();
+    if (result.stop == Stop::converged && !finite) result.stop = Stop::diverged;
     if (result.stop == Stop::converged) return true;
     run.now = before;
+    // Bodies stiffen as they deform: the step may have outgrown the limit since it was last looked at.
+    if (!stable(step, supports.fixed, loads)) return false;
     explain(run, result, -1);
-    if (run.outcome.stable_step < step.dt || run.model.settings.allow_unstable)
-      run.outcome.diagnosis += "; the time step is beyond the stable one or was not checked";
+    if (run.model.settings.allow_unstable)
+      run.outcome.diagnosis += "; the time step was not checked, as allowUnstable asks for";
     return false;
   }
 };

@@ -9,10 +9,8 @@ void run_quasi_static(Run& run) {
   if (!run.start_at_rest()) return;
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
-    run.now.step = static_cast<int>(s);
+    EquilibriumPath path = begin_path(run, static_cast<int>(s));
     const LoadSet* set = &run.equations.loads(run.now.step);
-    EquilibriumPath path{
-        {}, make_supports(step, run.equations.numbering(), run.now.u), run.now.time, step.dt * step.count};
     run.hold(step, path.supports.fixed);
     path.loads = [&](double share) { return ScaledLoads{{set, 1.0, path.time(share)}}; };
     for (int k = 1; k <= step.count; ++k)

@@ -102,7 +102,13 @@ double next_stop(const Step& step, double from, double to);
 Kinematics kinematics(const Settings& settings, const Motion& now, const Mask& fixed, double dt);
 
 /// Sets Outcome::stop and a diagnosis in plain words from an increment that failed.
-/// `share` is the share of the loads (statics) that was tried; negative where time is what counts.
-void explain(Run& run, const IncrementResult& result, double share);
+/// `share` is the share of the loads (statics) that was tried; negative where time is what counts. `evidence` for that
+/// reason, if there is any, is told with it.
+void explain(Run& run, const IncrementResult& result, double share, const std::string& evidence = "");
+
+/// An iteration that led nowhere, on a path whose last equilibrium is the present state: looks for a better reason and
+/// returns what speaks for it. inverted_element: where it ended, an element is; indefinite_tangent: the lowest
+/// eigenvalue of the tangent falls towards zero along the path and is below it beyond. "" and no change otherwise.
+std::string find_cause(Run& run, const EquilibriumPath& path, double share, IncrementResult& result);
 
 }  // namespace msml::fe

@@ -1,158 +1,167 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes drawn at random: law, element, mesh quality, load, integration and linear solver, from a seed.
+// Scenes drawn at random: law, element, mesh quality, support, load, integration and linear solver, from a seed.
 #pragma once
-#include <fmt/format.h>
-
-#include <random>
-#include <string>
-#include <vector>
-
-#include "solver/registry.hpp"
-#include "tests/solver/law_by_name.hpp"
-#include "tests/solver/meshes.hpp"
+#include "tests/stability/random_laws.hpp"
+#include "tests/stability/random_meshes.hpp"
 
 namespace msml::fe::testing {
 
-class Draw {
- public:
-  explicit Draw(unsigned seed) : engine_(seed) {}
-  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  /// From low to high, every power of ten as likely.
-  double power(double low, double high) { return std::exp(number(std::log(low), std::log(high))); }
-  int index(int count) { return std::uniform_int_distribution<int>(0, count - 1)(engine_); }
-  bool chance(double p) { return number(0, 1) < p; }
-
- private:
-  std::mt19937 engine_;
-};
-
-struct Drawn {
-  std::string words;  ///< what was drawn, for messages
-  Model model;
-};
-
-constexpr double drawn_length = 2, drawn_young = 1000;
-
-/// A law with E = 1000 and a ratio of 0 to .4999.
-inline std::shared_ptr<const Law> draw_law(Draw& draw, int law, std::string& words) {
-  const double nu = draw.chance(0.2) ? draw.number(0.45, 0.4999) : draw.number(0, 0.45);
-  const char* const forms[] = {"log", "cubic", "stable"};
-  words += fmt::format("nu {:.3f}, ", nu);
-  if (law < 2)
-    return make_linear_elastic(
-        {.youngs_modulus = drawn_young, .poisson_ratio = nu, .strain = law == 0 ? Strain::small : Strain::corotated});
-  if (law == 2) return law_by_name("stVenantKirchhoffMaterial", {{"youngModulus", drawn_young}, {"poissonRatio", nu}});
-  return neo_hookean(forms[law - 3], drawn_young, nu);
+/// The end turned by an angle in the course of the step.
+inline VectorFunction turning(double angle, double whole) {
+  return [=](const Vec3& X, double t) {
+    const double a = angle * t / whole, y = X[1] - 0.5, z = X[2] - 0.5;
+    return Vec3(0, std::cos(a) * y - std::sin(a) * z - y, std::sin(a) * y + std::cos(a) * z - z);
+  };
 }
 
-/// The same tetrahedra with a node amid each edge.
-inline Mesh with_mid_nodes(const Mesh& linear) {
-  std::map<std::array<int, 2>, int> known;
-  std::vector<Vec3> points;
-  for (int k = 0; k < linear.point_count(); ++k) points.push_back(linear.points.row(k).transpose());
-  Mesh mesh;
-  for (int e = 0; e < linear.cell_count(); ++e) {
-    std::array<int, 10> nodes;
-    for (int a = 0; a < 4; ++a) nodes[static_cast<std::size_t>(a)] = linear.cell(e)[a];
-    for (int k = 0; k < 6; ++k) {
-      const auto [a, b] = edge_of(k);
-      const int i = linear.cell(e)[a], j = linear.cell(e)[b];
-      const auto [it, fresh] = known.emplace(std::array<int, 2>{std::min(i, j), std::max(i, j)}, points.size());
-      if (fresh) points.push_back((linear.points.row(i) + linear.points.row(j)).transpose() / 2);
-      nodes[static_cast<std::size_t>(4 + k)] = it->second;
-    }
-    mesh.add_cell(CellKind::tet10, nodes.data());
+/// Springs from nodes to where they are, or to a point off them.
+inline void add_springs(Draw& draw, Step& step, const Mesh& mesh, const std::vector<int>& nodes, const Vec3& off) {
+  const double stiffness = drawn_young * draw.power(1e-2, 10);
+  for (const int n : nodes)
+    step.springs.push_back({.name = "spring",
+                            .first = n,
+                            .point = mesh.points.row(n).transpose() + off,
+                            .stiffness = stiffness,
+                            .damping = draw.chance(0.5) ? 0 : 0.01 * stiffness,
+                            .rest = off.norm() > 0 && draw.chance(0.5) ? 0.5 * off.norm() : 0});
+}
+
+/// Held at a wall, by springs, or not at all; a free static body is pulled at both ends alike.
+inline void draw_support(Draw& draw, Model& model, std::string& words) {
+  Step& step = model.steps[0];
+  const auto wall = points_where(*model.mesh, at_wall);
+  const double kind = draw.number(0, 1);
+  if (kind < 0.8) {
+    step.prescribed = {fix(wall)};
+  } else if (kind < 0.9) {
+    words += "on springs, ";
+    add_springs(draw, step, *model.mesh, wall, Vec3::Zero());
+  } else {
+    words += "free, ";
   }
-  mesh.points.resize(static_cast<Eigen::Index>(points.size()), 3);
-  for (std::size_t k = 0; k < points.size(); ++k) mesh.points.row(static_cast<Eigen::Index>(k)) = points[k].transpose();
-  return mesh;
 }
 
-/// A bar of 2 x 1 x 1 whose inner nodes are moved by up to `rough` of the mesh size.
-inline Mesh draw_mesh(Draw& draw, CellKind kind, std::string& words) {
-  const int n = 1 + draw.index(2);
-  const double rough = draw.chance(0.5) ? 0 : draw.number(0.05, 0.3);
-  words += fmt::format("{} n = {} rough {:.2f}, ", name(kind), n, rough);
-  Mesh mesh = box_mesh(2 * n, n, n, {drawn_length, 1, 1}, CellKind::tet4);
-  for (int k = 0; k < mesh.point_count(); ++k) {
-    const Vec3 x = mesh.points.row(k).transpose();
-    for (int i = 0; i < 3; ++i)
-      if (x[i] > 1e-9 && x[i] < (i == 0 ? drawn_length : 1) - 1e-9) mesh.points(k, i) += draw.number(-1, 1) * rough / n;
-  }
-  return kind == CellKind::tet4 ? mesh : with_mid_nodes(mesh);
-}
-
-/// A pull, a moved, a turned end or gravity, from harmless to absurd.
+/// A pull, a pressure, springs, a moved, a turned end or gravity, from harmless to absurd.
 inline void draw_load(Draw& draw, Model& model, std::string& words) {
   Step& step = model.steps[0];
-  const auto end = [](const Vec3& x) { return x[0] > drawn_length - 1e-9; };
-  const Vec3 direction = Vec3(draw.number(-1, 1), draw.number(-1, 1), draw.number(-1, 1)).normalized();
-  Prescribed moved{.name = "end", .nodes = points_where(*model.mesh, end)};
-  switch (draw.index(4)) {
+  const Vec3 direction = draw.direction();
+  const auto end = points_where(*model.mesh, at_end);
+  switch (draw.index(6)) {
     case 0: {
       const double size = drawn_young * draw.power(1e-3, 10);
       words += fmt::format("traction {:.3g} ({:.2f} {:.2f} {:.2f}), ", size, direction[0], direction[1], direction[2]);
-      step.face_loads = {{.name = "pull", .faces = faces_where(*model.mesh, end), .tractions = {size * direction}}};
+      step.face_loads = {{.name = "pull", .faces = faces_where(*model.mesh, at_end), .tractions = {size * direction}}};
       return;
     }
     case 1: {
       const double size = drawn_length * draw.power(1e-2, 2.5);
       words += fmt::format("end moved {:.3g} ({:.2f} {:.2f} {:.2f}), ", size, direction[0], direction[1], direction[2]);
-      moved.values = {size * direction};
-      break;
+      step.prescribed.push_back({.name = "end", .nodes = end, .values = {size * direction}});
+      return;
     }
     case 2: {
-      const double angle = draw.power(0.05, 4 * M_PI), whole = step.dt * step.count;
+      const double angle = draw.power(0.05, 4 * M_PI);
       words += fmt::format("end turned {:.3g}, ", angle);
-      moved.function = [=](const Vec3& X, double t) {
-        const double a = angle * t / whole, y = X[1] - 0.5, z = X[2] - 0.5;
-        return Vec3(0, std::cos(a) * y - std::sin(a) * z - y, std::sin(a) * y + std::cos(a) * z - z);
-      };
-      break;
+      step.prescribed.push_back({.name = "end", .nodes = end, .function = turning(angle, step.dt * step.count)});
+      return;
     }
+    case 3: {
+      const double size = drawn_young * draw.power(1e-3, 1) * (draw.chance(0.5) ? 1 : -1);
+      const bool side = draw.chance(0.5);
+      words += fmt::format("follower pressure {:.3g} on {}, ", size, side ? "a side" : "the end");
+      const auto at_side = [](const Vec3& x) { return x[2] > 1 - 1e-9; };
+      step.face_loads = {{.name = "pressure",
+                          .faces = side ? faces_where(*model.mesh, at_side) : faces_where(*model.mesh, at_end),
+                          .pressures = {size},
+                          .follower = true}};
+      return;
+    }
+    case 4:
+      words += fmt::format("springs to ({:.2f} {:.2f} {:.2f}), ", direction[0], direction[1], direction[2]);
+      add_springs(draw, step, *model.mesh, end, drawn_length * draw.power(1e-2, 2) * direction);
+      return;
     default:
       step.gravity = drawn_young * draw.power(1e-3, 10) * direction;
       words += fmt::format("gravity {:.3g}, ", step.gravity.norm());
       return;
   }
-  step.prescribed.push_back(moved);
 }
 
-inline void draw_settings(Draw& draw, Model& model, std::string& words) {
+/// A dead pull on both ends, which nothing needs to hold, along the bar: loads a static body without supports bears.
+inline void draw_balanced_load(Draw& draw, Model& model, std::string& words) {
+  const double size = drawn_young * draw.power(1e-3, 1);
+  words += fmt::format("pulled at both ends {:.3g}, ", size);
+  const Vec3 x = Vec3::UnitX();
+  model.steps[0].face_loads = {
+      {.name = "end", .faces = faces_where(*model.mesh, at_end), .tractions = {size * x}},
+      {.name = "other end", .faces = faces_where(*model.mesh, at_wall), .tractions = {-size * x}}};
+}
+
+inline void draw_integration(Draw& draw, Model& model, bool explicit_too) {
   constexpr Integrator methods[] = {
       Integrator::static_, Integrator::static_,           Integrator::quasi_static,     Integrator::implicit_euler,
       Integrator::newmark, Integrator::generalized_alpha, Integrator::symplectic_euler, Integrator::central_difference};
   Settings& settings = model.settings;
-  settings.integrator = methods[draw.index(8)];
+  settings.integrator = methods[draw.index(explicit_too ? 8 : 6)];
   model.steps[0].dt = is_explicit(settings.integrator) ? draw.power(1e-4, 3e-2) : draw.power(1e-3, 1);
   model.steps[0].count = is_dynamic(settings.integrator) ? 10 : 4;
   settings.load_steps = 1 + draw.index(5);
   if (is_dynamic(settings.integrator) && draw.chance(0.3)) settings.damping_mass = draw.power(1e-2, 10);
   if (!is_explicit(settings.integrator) && is_dynamic(settings.integrator) && draw.chance(0.2))
     settings.newton_iterations = 1;
-  settings.linear_solver = draw.chance(0.7) ? LinearSolver::direct : LinearSolver::cg;
+  // Absurd loads in adaptive steps take thousands of them.
+  settings.adaptive_step = !is_explicit(settings.integrator) && draw.chance(0.2) && model.mesh->point_count() < 100;
+}
+
+inline void draw_solver(Draw& draw, Model& model, bool gradients_too, std::string& words) {
+  Settings& settings = model.settings;
+  settings.linear_solver = draw.chance(0.7) || !gradients_too ? LinearSolver::direct : LinearSolver::cg;
   constexpr Preconditioner preconditioners[] = {Preconditioner::jacobi, Preconditioner::incomplete_cholesky,
                                                 Preconditioner::multigrid, Preconditioner::automatic};
   settings.preconditioner = preconditioners[draw.index(4)];
-  words += fmt::format("{} dt {:.3g} {} iterations {} ", name(settings.integrator), model.steps[0].dt,
-                       settings.newton_iterations, settings.linear_solver == LinearSolver::cg ? "CG" : "direct");
+  words += fmt::format("{} dt {:.3g} {} iterations{} {} ", name(settings.integrator), model.steps[0].dt,
+                       settings.newton_iterations, settings.adaptive_step ? " adaptive" : "",
+                       settings.linear_solver == LinearSolver::cg ? "CG" : "direct");
+}
+
+/// An element that goes with the law, and the law.
+inline void draw_body(Draw& draw, Drawn& drawn) {
+  const auto family = static_cast<Family>(draw.index(families));
+  drawn.words += fmt::format("{} ", name(family));
+  const CellKind kind = draw.chance(0.5) ? CellKind::tet4 : CellKind::tet10;
+  const bool other = draw.chance(0.4), quadratic = kind == CellKind::tet10;
+  const auto material = draw_law(draw, family, other && quadratic, drawn.words);
+  drawn.model = make_model(draw_mesh(draw, kind, drawn.words), {});
+  drawn.model.regions[0].law = material;
+  if (!other) return;
+  const auto split = material->split();
+  if (quadratic && family == Family::corotated && draw.chance(0.5)) {
+    drawn.model.formulation = Formulation::single_rotation;
+    drawn.words += "single rotation, ";
+  } else if (split && split->modulus > 0) {
+    drawn.model.formulation = quadratic ? Formulation::mixed : Formulation::fbar;
+    drawn.words += quadratic ? "mixed, " : "fbar, ";
+  }
 }
 
 inline Drawn draw_scene(unsigned seed) {
   Draw draw(seed);
   Drawn drawn{fmt::format("seed {}: ", seed), {}};
-  const int law = draw.index(6);
-  constexpr const char* laws[] = {"small", "corotated", "St. Venant-Kirchhoff", "log", "cubic", "stable"};
-  drawn.words += fmt::format("{} ", laws[law]);
-  const auto material = draw_law(draw, law, drawn.words);
-  const CellKind kind = draw.chance(0.5) ? CellKind::tet4 : CellKind::tet10;
-  drawn.model = make_model(draw_mesh(draw, kind, drawn.words), {});
-  drawn.model.regions[0].law = material;
-  if (kind == CellKind::tet10 && law == 1 && draw.chance(0.4)) drawn.model.formulation = Formulation::single_rotation;
-  draw_settings(draw, drawn.model, drawn.words);
-  const auto wall = points_where(*drawn.model.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
-  drawn.model.steps[0].prescribed = {fix(wall)};
-  draw_load(draw, drawn.model, drawn.words);
+  draw_body(draw, drawn);
+  Model& model = drawn.model;
+  const bool mixed = model.formulation == Formulation::mixed;
+  draw_integration(draw, model, !mixed);
+  if (model.formulation == Formulation::standard && draw.chance(0.15)) {
+    model.regions[0].prony = {.g = {draw.number(0.1, 0.5), draw.number(0.1, 0.4)}, .tau = {draw.power(1e-2, 1), 1}};
+    drawn.words += "viscoelastic, ";
+  }
+  draw_support(draw, model, drawn.words);
+  const bool held = !model.steps[0].prescribed.empty() || !model.steps[0].springs.empty();
+  if (held || is_dynamic(model.settings.integrator))
+    draw_load(draw, model, drawn.words);
+  else
+    draw_balanced_load(draw, model, drawn.words);
+  draw_solver(draw, model, !mixed, drawn.words);
   return drawn;
 }
 

@@ -64,15 +64,13 @@ Planted planted(unsigned seed) {
   std::string words;
   const int n = 1 + draw.index(2);
   Model model = make_model(box_mesh(2 * n, n, n, {drawn_length, 1, 1}, CellKind::tet4), {});
-  const auto base = [](const Vec3& x) { return x[0] < 1e-9; };
-  const auto end = [](const Vec3& x) { return x[0] > drawn_length - 1e-9; };
   const auto any = [](const Vec3&) { return true; };
   const double nu = draw.number(0, 0.45);
-  model.regions[0].law = draw_law(draw, 1, words);
-  model.steps[0].prescribed = {fix(points_where(*model.mesh, base))};
+  model.regions[0].law = draw_law(draw, Family::corotated, false, words);
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, at_wall))};
   model.settings.load_steps = 2 + draw.index(8);
   const Vec3 direction = Vec3(draw.number(0.1, 1), draw.number(-1, 1), draw.number(-1, 1)).normalized();
-  const FaceLoad pull{.name = "pull", .faces = faces_where(*model.mesh, end), .tractions = {direction}};
+  const FaceLoad pull{.name = "pull", .faces = faces_where(*model.mesh, at_end), .tractions = {direction}};
   switch (seed % 5) {
     case 0:  // the stable step is found, and exceeded by 5 % to a thousandfold
       model.settings.integrator = draw.chance(0.5) ? Integrator::symplectic_euler : Integrator::central_difference;
@@ -85,7 +83,7 @@ Planted planted(unsigned seed) {
       model.regions[0].law = neo_hookean("log", drawn_young, nu);
       model.steps[0].prescribed.push_back(fix(points_where(*model.mesh, any), false, true, true));
       model.steps[0].prescribed.push_back(Prescribed{.name = "end",
-                                                     .nodes = points_where(*model.mesh, end),
+                                                     .nodes = points_where(*model.mesh, at_end),
                                                      .values = {Vec3(-drawn_length * draw.number(1.1, 3), 0, 0)}});
       return {"inverted element", "inverted element", model};
     case 2:

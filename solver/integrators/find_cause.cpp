@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Looks behind an iteration that led nowhere: what is it about the body that it could not get past?
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "solver/integrators/stepper.hpp"
+
+namespace msml::fe {
+namespace {
+
+/// The tangent of one state.
+struct Tangent {
+  bool stable = false;  ///< positive definite; of mixed elements: one negative pivot for each pressure
+  double lowest = 0;    ///< eigenvalue of K x = m D x nearest to zero, D the diagonal of K; 0 if not found
+};
+
+Vector diagonal_of(const BlockMatrix& K) {
+  Vector d(3 * K.pattern->nodes());
+  for (Eigen::Index k = 0; k < d.size(); ++k) {
+    const auto place = static_cast<std::size_t>(K.pattern->diagonal[static_cast<std::size_t>(k / 3)]);
+    d[k] = K.values[9 * place + 4 * static_cast<std::size_t>(k % 3)];
+  }
+  return d;
+}
+
+/// By inverse iteration, to a few per cent.
+double lowest_eigenvalue(LinearSystem& linear, const BlockMatrix& K, const Mask& fixed) {
+  const Vector D = diagonal_of(K);
+  Vector x(D.size()), y;
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    x[k] = fixed[static_cast<std::size_t>(k)] ? 0 : std::sin(1 + 2.4 * static_cast<double>(k));  // of no symmetry
+  double value = 0;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const double size = std::sqrt(std::abs(x.dot(D.cwiseProduct(x))));
+    if (!(size > 0) || !std::isfinite(size)) return 0;
+    const Vector right = D.cwiseProduct(x) / size;
+    if (linear.solve(right, 1e-6, y) != LinearStatus::done) return 0;
+    const double before = value, inverse = y.dot(right);
+    value = inverse != 0 ? 1 / inverse : 0;
+    x = y;
+    if (std::abs(value - before) <= 0.02 * std::abs(value)) break;
+  }
+  return std::isfinite(value) ? value : 0;
+}
+
+Tangent look_at(Run& run, const EquilibriumPath& path, const Vector& u, double share, bool eigenvalue) {
+  run.newton.prepare(u, path.loads(share));
+  BlockMatrix K = run.newton.tangent();
+  path.supports.slides.project(K);
+  LinearSystem& linear = run.newton.linear();
+  LinearStatus status = linear.factor(K, path.supports.fixed);
+  if (status == LinearStatus::done) status = linear.probe();
+  const auto pressures = static_cast<long>(run.equations.numbering().pressure_of.size());
+  Tangent found;
+  found.stable = status == LinearStatus::done && (pressures == 0 || linear.negative_pivots() == pressures);
+  if (found.stable && eigenvalue) found.lowest = lowest_eigenvalue(linear, K, path.supports.fixed);
+  return found;
+}
+
+/// A stiffness that has fallen to this share of that at rest, with an indefinite one next to it, is on its way to zero.
+constexpr double soft = 0.3;
+
+}  // namespace
+
+std::string find_cause(Run& run, const EquilibriumPath& path, double share, IncrementResult& result) {
+  if (result.stop != Stop::newton_limit && result.stop != Stop::diverged) return "";
+  if (run.equations.small_strain() || run.equations.numbering().scalar || !result.u.allFinite()) return "";
+  if (result.worst_J <= 0 && !run.model.settings.allow_inverted) {
+    result.stop = Stop::inverted_element;
+    return "the iteration only goes on through an element turned inside out";
+  }
+  if (!run.free.modes.empty() || look_at(run, path, result.u, share, false).stable) return "";
+  const Tangent good = look_at(run, path, run.now.u, run.now.load_factor, true);
+  const Tangent rest = look_at(run, path, Vector::Zero(run.now.u.size()), run.now.load_factor, true);
+  run.newton.forget();
+  if (!good.stable || !rest.stable || !(good.lowest < soft * rest.lowest)) return "";
+  result.stop = Stop::indefinite_tangent;
+  return fmt::format(
+      "at the last equilibrium the softest motion has {:.2g} of the stiffness it has at rest, and beyond "
+      "it none: the loads pass a limit point, or the body buckles there",
+      good.lowest / rest.lowest);
+}
+
+}  // namespace msml::fe
