@@ -32,8 +32,8 @@ void check_balance(const Run& run, const Supports& supports, Check& check) {
   const Forces& f = run.between ? *run.between : run.newton.forces();
   Vector residual = f.residual();
   supports.slides.project(residual);
-  check.load_scale = std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm(),
-                               spring_forces(run).norm()});
+  check.load_scale = std::max(
+      {f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm(), spring_forces(run).norm()});
   if (check.load_scale > 0) check.residual = free_norm(residual, supports.fixed) / check.load_scale;
   check.sum_loads = sum(f.external);
   check.sum_reactions = sum(run.now.reaction);

@@ -36,7 +36,8 @@ std::string advice(const Run& run, const IncrementResult& result) {
         return "the body lost its stiffness on the way: the loads pass a limit point, or the law softens without end. "
                "Try " +
                smaller + ", arcLength=\"true\", a dynamic timeIntegration, or another law";
-      return "a part of the body can move freely: fix it, or join parts that touch only at a node or an edge";
+      return "either a part of the body can move freely: fix it, or join parts that touch only at a node or an edge; or "
+             "its stiffnesses lie too far apart to be told from nothing: flat elements, a poissonRatio too near 0.5";
     case Stop::out_of_memory:
       return "try linearSolver=\"CG\" or a coarser mesh";
     default:

@@ -359,6 +359,7 @@ struct Outcome {
   double stable_step = std::numeric_limits<double>::infinity();  ///< of explicit methods: the smallest estimate
   std::vector<std::string> notes;                                ///< what was decided on the way, in plain words
   std::vector<std::string> warnings;                             ///< what is to be doubted, in plain words
+  std::vector<std::string> recoveries;  ///< where the plain way failed and another led on, in plain words
   long unknowns = 0;
   int newton_iterations = 0, linear_solves = 0;
   long cg_iterations = 0;

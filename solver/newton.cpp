@@ -143,7 +143,7 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   }
   evaluate(increment, u, Want::definite_tangent, true);
   tangent_current_ = false;
-  definite_taken_ = true;
+  definite_taken_ = true, ++definite_;
   LinearStatus status = attempt(increment, jump, residual, step);
   // A body crumpled to a point has no stiffness in some direction: a little on the diagonal bounds the step.
   if (status == LinearStatus::not_positive_definite && energetic_ && forces_.found.smallest_J < 0.1) {

@@ -130,6 +130,7 @@ class Newton {
   bool indefinite_ = false;      ///< the last exact tangent was not that of a stable equilibrium
   double round_off_ = 0;         ///< norm of the residual that round-off in the strains alone can leave
   int iterations_ = 0, solves_ = 0;
+  int definite_ = 0, walked_ = 0;  ///< iterations with a semidefinite tangent, increments reached in pieces
   double seconds_assembly_ = 0, seconds_linear_ = 0;
 };
 

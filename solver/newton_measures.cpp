@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How far an increment has come: norms, scales, verdicts and statistics.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -87,6 +89,14 @@ void Newton::report(Outcome& outcome) const {
   outcome.linear_solves = solves_;
   outcome.cg_iterations = linear_->iterations;
   outcome.cg_gave_up = linear_->gave_up;
+  if (definite_ > 0 && model_.settings.definiteness == Definiteness::automatic)
+    outcome.recoveries.push_back(
+        fmt::format("{} iterations took the law's semidefinite tangent, where its own was indefinite", definite_));
+  if (walked_ > 0)
+    outcome.recoveries.push_back(
+        fmt::format("{} increments were reached in pieces, where Newton's method did not get there at once", walked_));
+  if (linear_->gave_up)
+    outcome.recoveries.emplace_back("conjugate gradients missed their tolerance, and a factorisation took over");
   outcome.seconds_assembly = seconds_assembly_;
   outcome.seconds_linear = seconds_linear_;
   const std::size_t values =

@@ -70,6 +70,8 @@ Outcome run_model(const Model& model, const Observer& observer) {
   integrate(run);
   outcome.unknowns = count_unknowns(model, equations.numbering(), run.now.step);
   newton.report(outcome);
+  if (run.halved > 0) outcome.recoveries.push_back(fmt::format("{} steps failed and were halved", run.halved));
+  if (run.untangled > 0) outcome.recoveries.emplace_back("a stable law led out of states with inverted elements");
   if (run.untangled > 0)
     outcome.notes.push_back(
         fmt::format("{} increments began with elements inside out or crushed; the stable "

@@ -172,7 +172,7 @@ std::string default_name(const Measure& m) {
 Part<Measure> measure_tag() {
   Part<Measure> tag("measure", "measure", "A number that is taken of each run, and becomes a column of the table.");
   const MeasureKeys k = describe_measure(tag);
-  tag.note("The columns status, unknowns, warnings and reason are always there.");
+  tag.note("The columns status, unknowns, warnings, recovered and reason are always there.");
   tag.build([=](const Record& record) {
     return [=](const FaultSink& fault) {
       Measure m{.id = "",

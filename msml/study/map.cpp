@@ -17,7 +17,8 @@ namespace {
 struct Look {
   const char *name, *colour;
 };
-constexpr std::array<Look, 5> looks{{{"accurate", "#009E73"},
+constexpr std::array<Look, 6> looks{{{"accurate", "#009E73"},
+                                     {"accurate, recovered", "#8FD1B5"},
                                      {"inaccurate", "#F0E442"},
                                      {"inaccurate, warned", "#0072B2"},
                                      {"stopped, said so", "#56B4E9"},
@@ -33,6 +34,34 @@ std::vector<double> values_of(const Table& table, const std::string& column, boo
   values.erase(std::unique(values.begin(), values.end()), values.end());
   if (values.empty()) throw Error(fmt::format("a map needs numbers in {}{}", column, log ? " above 0" : ""));
   return values;
+}
+
+/// Words in a column, such as names of laws, become 1, 2, 3, … in the order of their rows. Returns their tics, "" where
+/// there are none.
+std::string number_words(Table& table, const std::string& column, const char* axis, bool& log) {
+  const int place = table.find(column);
+  bool found = false;
+  for (std::size_t row = 0; row < table.rows.size(); ++row)
+    found = found || (!table.text(row, column).empty() && !std::isfinite(table.number(row, column)));
+  if (place < 0 || !found) return "";
+  const std::vector<std::string> words = distinct(table, {column});
+  for (auto& row : table.rows) {
+    std::string& cell = row[static_cast<std::size_t>(place)];
+    cell = std::to_string(std::find(words.begin(), words.end(), cell) - words.begin() + 1);
+  }
+  log = false;
+  std::string tics;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    tics += fmt::format("{}{} {}", i == 0 ? "" : ", ", quoted(words[i]), i + 1);
+  return fmt::format("set {}tics ({}) noenhanced\n", axis, tics);
+}
+
+/// Tics at the values of a linear axis, where there are few: what lies between them was not run.
+std::string value_tics(const std::vector<double>& values, const char* axis, bool log) {
+  if (log || values.size() > 12) return "";
+  std::string tics;
+  for (const double value : values) tics += fmt::format("{}\"{:g}\" {:g}", tics.empty() ? "" : ", ", value, value);
+  return fmt::format("set {}tics ({})\n", axis, tics);
 }
 
 /// Borders between neighbouring values, halfway in the scale of the axis, and the outer ones as far out.
@@ -70,17 +99,20 @@ std::string legend() {
 Fate fate(const Table& table, std::size_t row, const Chart& chart) {
   if (!table.done(row)) return Fate::said_so;
   const double error = std::abs(table.number(row, chart.color));
-  if (error <= chart.accurate) return Fate::accurate;
+  if (error <= chart.accurate) return table.text(row, "recovered").empty() ? Fate::accurate : Fate::recovered;
   if (!table.text(row, "warnings").empty()) return Fate::warned;
   return error <= chart.wrong ? Fate::inaccurate : Fate::wrong;
 }
 
 std::string map_script(const Table& all, const Chart& chart, const ChartStyle& style) {
-  const Table table = filtered(all, chart.only);
-  const auto xs = values_of(table, chart.x, chart.axes.log_x), ys = values_of(table, chart.y, chart.axes.log_y);
-  const auto x = borders(xs, chart.axes.log_x), y = borders(ys, chart.axes.log_y);
-  const Frame frame{{chart.axes.log_x, x.front(), x.back()}, {chart.axes.log_y, y.front(), y.back()}};
-  std::string text = chart_head(chart, frame, style, 24) + legend() + limit_lines(chart, frame.x);
+  Table table = filtered(all, chart.only);
+  bool log_x = chart.axes.log_x, log_y = chart.axes.log_y;
+  const std::string tics = number_words(table, chart.x, "x", log_x) + number_words(table, chart.y, "y", log_y);
+  const auto xs = values_of(table, chart.x, log_x), ys = values_of(table, chart.y, log_y);
+  const auto x = borders(xs, log_x), y = borders(ys, log_y);
+  const Frame frame{{log_x, x.front(), x.back()}, {log_y, y.front(), y.back()}};
+  std::string text = chart_head(chart, frame, style, 24) + value_tics(xs, "x", log_x) + value_tics(ys, "y", log_y) +
+                     tics + legend() + limit_lines(chart, frame.x);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const std::size_t i = place(xs, table.number(row, chart.x)), k = place(ys, table.number(row, chart.y));
     if (i >= xs.size() || k >= ys.size()) continue;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <map>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "msml/core/atomic_file.hpp"
@@ -66,6 +67,20 @@ std::string warnings_of(const RunResult& result) {
   return text;
 }
 
+/// What simulations note in their check under "recoveries".
+std::string recoveries_of(const RunResult& result) {
+  std::string text;
+  for (const NodeReport& node : result.nodes) {
+    const auto check = node.facts.find("check");
+    if (check == node.facts.end()) continue;
+    const auto json = nlohmann::json::parse(check->second, nullptr, false);
+    if (!json.is_object()) continue;
+    for (const auto& each : json.value("recoveries", nlohmann::json::array()))
+      if (each.is_string()) text += (text.empty() ? "" : "; ") + each.get<std::string>();
+  }
+  return text;
+}
+
 double median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const std::size_t n = values.size();
@@ -80,7 +95,13 @@ class Runner {
       : study_(study), registry_(registry), options_(options), results_(results) {}
 
   std::vector<std::string> row(const StudyRun& run, std::size_t number) {
-    Row row{.status = "refused", .reason = run.reason, .warnings = {}, .unknowns = {}, .passes = 0, .samples = {}};
+    Row row{.status = "refused",
+            .reason = run.reason,
+            .warnings = {},
+            .recovered = {},
+            .unknowns = {},
+            .passes = 0,
+            .samples = {}};
     row.samples.resize(study_.measures.size());
     if (run.scene) {
       try {
@@ -96,7 +117,7 @@ class Runner {
 
  private:
   struct Row {
-    std::string status, reason, warnings;
+    std::string status, reason, warnings, recovered;
     std::optional<double> unknowns;
     int passes = 0;                            ///< that were measured
     std::vector<std::vector<double>> samples;  ///< per measure, one per pass
@@ -118,6 +139,7 @@ class Runner {
       spent += result.seconds;
       row.unknowns = unknowns(finished);
       row.warnings = warnings_of(result);
+      row.recovered = recoveries_of(result);
       if (!result.errors.empty()) throw result.errors.front();
       std::optional<Finished> reference;
       if (truth) reference.emplace(Finished{*run.reference, *truth, *truth_shelf});
@@ -171,6 +193,7 @@ class Runner {
       cells.push_back(digits(*std::max_element(samples.begin(), samples.end())));
     }
     cells.push_back(row.warnings);
+    cells.push_back(row.recovered);
     cells.push_back(row.reason);
     cells.push_back(run.key);
     return cells;
@@ -223,7 +246,7 @@ std::vector<std::string> study_columns(const Study& study) {
     if (each.quantity == Quantity::time) columns.insert(columns.end(), {each.id + "_low", each.id + "_high"});
     if (each.extrapolated) columns.push_back(each.id + "_value");
   }
-  columns.insert(columns.end(), {"warnings", "reason", "key"});
+  columns.insert(columns.end(), {"warnings", "recovered", "reason", "key"});
   return columns;
 }
 

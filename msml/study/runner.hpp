@@ -24,7 +24,8 @@ struct Sharing {
 
 /// The columns of a study's table: variables, status, unknowns, where a time is measured how
 /// often it was (passes), measures (a time with its lowest and highest value in
-/// ID_low and ID_high, an extrapolated error with the number itself in ID_value), warnings, reason, key.
+/// ID_low and ID_high, an extrapolated error with the number itself in ID_value), warnings,
+/// recovered (what simulations made good on the way), reason, key.
 std::vector<std::string> study_columns(const Study& study);
 
 /// Told after each run: its row, how many rows there are, and how many there will be.

@@ -14,7 +14,7 @@ IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, do
   run.check_balanced(increment.loads);
   run.equations.begin_step((share - from) * path.duration);
   if (run.equations.has_history()) run.newton.forget();
-  return last_resort ? run.newton.walk(increment) : run.reach(increment);
+  return last_resort && !run.tangled ? run.newton.walk(increment) : run.reach(increment);
 }
 
 void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) {
@@ -80,6 +80,7 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
       return false;
     }
     piece = (share - from) / 2;
+    ++run.halved;
   }
   run.now.time = path.time(to);
   ++run.now.increment;

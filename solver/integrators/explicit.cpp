@@ -69,6 +69,7 @@ struct Explicit {
     BlockMatrix K(C.pattern);
     run.newton.stiffness(run.now.u, loads, K);
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
+    if (!std::isfinite(largest)) return true;  // what stopped the run says more
     const double limit = limit_of(K, largest, fixed);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
     if (step.dt <= limit * (1 + 1e-6) || (left > 0 && grows_little(K, fixed, step.dt, left))) return true;

@@ -11,8 +11,10 @@ namespace {
 
 /// The tangent of one state.
 struct Tangent {
-  bool stable = false;  ///< positive definite; of mixed elements: one negative pivot for each pressure
-  double lowest = 0;    ///< eigenvalue of K x = m D x nearest to zero, D the diagonal of K; 0 if not found
+  /// Positive definite; of mixed elements: one negative pivot for each pressure; under follower pressure: a determinant
+  /// of the sign at rest.
+  bool stable = false;
+  double lowest = 0;  ///< eigenvalue of K x = m D x nearest to zero, D the diagonal of K; 0 if not found
 };
 
 Vector diagonal_of(const BlockMatrix& K) {
@@ -47,13 +49,18 @@ double lowest_eigenvalue(LinearSystem& linear, const BlockMatrix& K, const Mask&
 Tangent look_at(Run& run, const EquilibriumPath& path, const Vector& u, double share, bool eigenvalue) {
   run.newton.prepare(u, path.loads(share));
   BlockMatrix K = run.newton.tangent();
+  const BlockMatrix* followers = run.newton.followers();
+  if (followers) add(K, 1, *followers);
   path.supports.slides.project(K);
-  LinearSystem& linear = run.newton.linear();
+  const auto own = followers ? make_unsymmetric(run.model.settings.threads) : nullptr;
+  LinearSystem& linear = own ? *own : run.newton.linear();
   LinearStatus status = linear.factor(K, path.supports.fixed);
   if (status == LinearStatus::done) status = linear.probe();
   const auto pressures = static_cast<long>(run.equations.numbering().pressure_of.size());
+  const bool turned = followers ? linear.negative_determinant() != (pressures % 2 != 0)
+                                : linear.negative_pivots() != pressures;
   Tangent found;
-  found.stable = status == LinearStatus::done && (pressures == 0 || linear.negative_pivots() == pressures);
+  found.stable = status == LinearStatus::done && !turned;
   if (found.stable && eigenvalue) found.lowest = lowest_eigenvalue(linear, K, path.supports.fixed);
   return found;
 }

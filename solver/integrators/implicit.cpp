@@ -80,6 +80,9 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
     trial.result.worst_element = run.newton.forces().found.smallest_J_element;
     trial.result.worst_J = run.newton.forces().found.smallest_J;
     trial.result.stop = run.newton.state_verdict();
+    // One linear solve leaves a residual; one far beyond all forces is no answer to go on from.
+    const double left = free_norm(run.newton.residual(trial.increment), stage.supports.fixed);
+    if (trial.result.stop == Stop::converged && left > 1e6 * trial.result.scale) trial.result.stop = Stop::diverged;
   }
   return trial;
 }
@@ -154,6 +157,7 @@ bool advance(Stage& stage, double target) {
     }
     if (!solved || (error > 1 && taken * factor >= smallest)) {
       h = taken * factor;
+      run.halved += !solved;
       run.newton.go_back(start_forces);
       continue;
     }

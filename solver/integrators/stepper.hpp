@@ -36,6 +36,7 @@ struct Run {
   double most_energy = 0;                        ///< largest of all of these
   bool tangled = false;  ///< at the last mark an element had less than a tenth of its volume, or was inside out
   std::unique_ptr<Untangler> untangler = {};
+  int halved = 0;     ///< pieces of load or time that failed and were halved
   int untangled = 0;  ///< increments that went on from where the untangler led
 
   /// Takes up what the supports of a static step leave free, if anything.

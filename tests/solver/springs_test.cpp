@@ -223,5 +223,17 @@ TEST(Springs, MoveABodyThatNothingElseLoads) {
   }
 }
 
+// Springs at all nodes and no support: all forces are internal, and still they are what a residual is beside.
+TEST(Springs, HoldABodyWhoseResidualIsMeasuredBesideThem) {
+  Model model = make_model(box_mesh(2, 1, 1, {2, 1, 1}, CellKind::tet4), {.youngs_modulus = 100, .poisson_ratio = 0.3});
+  for (int n = 0; n < model.mesh->point_count(); ++n)
+    model.steps[0].springs.push_back(
+        {.name = "hold", .first = n, .point = 1.3 * model.mesh->points.row(n).transpose(), .stiffness = 10});
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_GT(outcome.check.load_scale, 1);
+  EXPECT_LT(outcome.check.residual, 1e-8);
+}
+
 }  // namespace
 }  // namespace msml::fe

@@ -59,9 +59,9 @@ inline bool press_node(Mesh& mesh, int element, int corner, double height) {
   return false;
 }
 
-/// A sliver: a node between the ends pressed to a height of 1e-6 to 0.3.
-inline void draw_sliver(Draw& draw, Mesh& mesh, std::string& words) {
-  const double height = draw.power(1e-6, 0.3);
+/// A sliver: a node between the ends pressed to a height of `low` to `high`.
+inline void draw_sliver(Draw& draw, Mesh& mesh, std::string& words, double low = 1e-6, double high = 0.3) {
+  const double height = draw.power(low, high);
   for (int trial = 0; trial < 100; ++trial) {
     const int element = draw.index(mesh.cell_count()), corner = draw.index(4);
     const Vec3 x = mesh.points.row(mesh.cell(element)[corner]).transpose();

@@ -75,12 +75,13 @@ TEST(Chart, ShowsWhatTheoryKnows) {
 }
 
 TEST(Map, ColoursEachRunByItsFate) {
-  const Table table{{"dt", "k", "error", "status", "warnings"},
-                    {{"1", "1", "0.01", "done", ""},
-                     {"10", "1", "0.2", "done", ""},
-                     {"1", "100", "", "not converged", ""},
-                     {"10", "100", "7", "done", ""},
-                     {"20", "100", "7", "done", "the motion is not to be trusted"}}};
+  const Table table{{"dt", "k", "error", "status", "warnings", "recovered"},
+                    {{"1", "1", "0.01", "done", "", ""},
+                     {"10", "1", "0.2", "done", "", "3 steps failed and were halved"},
+                     {"1", "100", "", "not converged", "", ""},
+                     {"10", "100", "7", "done", "", ""},
+                     {"20", "100", "7", "done", "the motion is not to be trusted", ""},
+                     {"20", "1", "0.01", "done", "", "3 steps failed and were halved"}}};
   Chart chart{.id = "m",
               .title = "",
               .x = "dt",
@@ -96,6 +97,7 @@ TEST(Map, ColoursEachRunByItsFate) {
   EXPECT_EQ(fate(table, 2, chart), Fate::said_so);
   EXPECT_EQ(fate(table, 3, chart), Fate::wrong);
   EXPECT_EQ(fate(table, 4, chart), Fate::warned);
+  EXPECT_EQ(fate(table, 5, chart), Fate::recovered);
   chart.theory = {Formula("10/X")};
   const std::string script = gnuplot_script(table, chart, {});
   // Cells meet halfway between the values in the logarithm: at dt = sqrt(10) and k = 10.
@@ -103,6 +105,19 @@ TEST(Map, ColoursEachRunByItsFate) {
               HasSubstr("from first 0.31622777,0.1 to first 3.1622777,10 behind fs solid border lc rgb \"#FFFFFF\" fc "
                         "rgb \"#009E73\""));
   EXPECT_THAT(script, HasSubstr("plot $theory0 with lines"));
+}
+
+TEST(Map, WordsStandSideBySide) {
+  const Table table{{"law", "load", "error", "status"},
+                    {{"log", "1", "0.01", "done"}, {"cubic", "1", "0.01", "done"}, {"log", "10", "0.01", "done"}}};
+  Chart chart{.id = "m", .title = "", .x = "load", .y = "law", .group = {}, .only = {}, .axes = {}, .slopes = {}};
+  chart.color = "error";
+  const std::string script = gnuplot_script(table, chart, {});
+  EXPECT_THAT(script, HasSubstr("set ytics (\"log\" 1, \"cubic\" 2) noenhanced"));
+  EXPECT_THAT(script, HasSubstr("to first 3.1622777,1.5 behind"));
+  EXPECT_THAT(script, Not(HasSubstr("set logscale y")));
+  chart.axes.log_x = false;
+  EXPECT_THAT(gnuplot_script(table, chart, {}), HasSubstr("set xtics (\"1\" 1, \"10\" 10)"));
 }
 
 TEST(Chart, WordsStandInARow) {

@@ -70,7 +70,7 @@ TEST(StudyRun, AColumnUnderItsOwnWeightIsExactWithQuadraticElements) {
     </study>)xml",
           folder);
   EXPECT_EQ(ran.table.columns, (std::vector<std::string>{"kind", "n", "status", "unknowns", "error", "tip_z",
-                                                         "warnings", "reason", "key"}));
+                                                         "warnings", "recovered", "reason", "key"}));
   ASSERT_EQ(ran.table.rows.size(), 6U);
   for (std::size_t row = 0; row < 6; ++row) EXPECT_EQ(ran.table.text(row, "status"), "done");
   EXPECT_LT(ran.table.number(5, "error"), 1e-9);  // round-off of the solver
