@@ -57,8 +57,8 @@ Tangent look_at(Run& run, const EquilibriumPath& path, const Vector& u, double s
   LinearStatus status = linear.factor(K, path.supports.fixed);
   if (status == LinearStatus::done) status = linear.probe();
   const auto pressures = static_cast<long>(run.equations.numbering().pressure_of.size());
-  const bool turned = followers ? linear.negative_determinant() != (pressures % 2 != 0)
-                                : linear.negative_pivots() != pressures;
+  const bool turned =
+      followers ? linear.negative_determinant() != (pressures % 2 != 0) : linear.negative_pivots() != pressures;
   Tangent found;
   found.stable = status == LinearStatus::done && !turned;
   if (found.stable && eigenvalue) found.lowest = lowest_eigenvalue(linear, K, path.supports.fixed);

@@ -125,7 +125,7 @@ inline Planted plant_collapse(Draw& draw, Model model, bool wrong) {
   model.regions[0].law = neo_hookean(wrong ? "cubic" : "stable", drawn_young, draw.number(0.1, 0.45));
   model.steps[0].prescribed.clear();
   model.settings.untangle = false;
-  model.initial_displacement = -draw.number(0.97, 0.98) * model.mesh->points;
+  model.initial_displacement = -draw.number(0.985, 0.995) * model.mesh->points;
   return {"collapsed equilibrium", "collapsed equilibrium", {Stop::collapsed}, model};
 }
 
