@@ -30,16 +30,6 @@ void add_six(const Tensor<Lanes>& a, int lane, double weight, double* out) {
   for (int k = 0; k < 6; ++k) out[k] += weight * a.c[place[k]][lane];
 }
 
-/// Volume, area or length of the cell between its corners, up to a factor that all cells of a kind share.
-double corner_volume(const Mesh& mesh, int cell) {
-  const int* nodes = mesh.cell(cell);
-  const int dimension = msml::dimension(mesh.kinds[static_cast<std::size_t>(cell)]);
-  Mat3 edges = Mat3::Identity();
-  for (int d = 0; d < dimension; ++d)
-    edges.col(d) = (mesh.points.row(nodes[d + 1]) - mesh.points.row(nodes[0])).transpose();
-  return std::abs(edges.topLeftCorner(dimension, dimension).determinant());
-}
-
 void add_nine(const Mat3& a, double weight, double* out) {
   for (int k = 0; k < 9; ++k) out[k] += weight * a(k / 3, k % 3);
 }
@@ -267,34 +257,6 @@ ElementResults element_results(const Model& model, const State& state, const Ele
     });
   });
   return results;
-}
-
-std::vector<double> recover_at_nodes(const Model& model, const std::vector<double>& values, int components) {
-  const Mesh& mesh = *model.mesh;
-  const std::size_t points = static_cast<std::size_t>(mesh.point_count()), width = static_cast<std::size_t>(components);
-  std::vector<double> mean(points * width, 0);
-  std::vector<int> regions_at(points, 0);
-  for (const Region& region : model.regions) {
-    std::vector<double> sums(points * width, 0), weights(points, 0);
-    for (const int e : region.elements) {
-      const int* nodes = mesh.cell(e);
-      const double volume = corner_volume(mesh, e);
-      for (int a = 0; a < node_count(mesh.kinds[static_cast<std::size_t>(e)]); ++a) {
-        const std::size_t n = static_cast<std::size_t>(nodes[a]);
-        weights[n] += volume;
-        for (std::size_t c = 0; c < width; ++c)
-          sums[n * width + c] += volume * values[static_cast<std::size_t>(e) * width + c];
-      }
-    }
-    for (std::size_t n = 0; n < points; ++n) {
-      if (!(weights[n] > 0)) continue;
-      ++regions_at[n];
-      for (std::size_t c = 0; c < width; ++c) mean[n * width + c] += sums[n * width + c] / weights[n];
-    }
-  }
-  for (std::size_t n = 0; n < points; ++n)
-    for (std::size_t c = 0; c < width && regions_at[n] > 1; ++c) mean[n * width + c] /= regions_at[n];
-  return mean;
 }
 
 }  // namespace msml::fe

@@ -377,7 +377,7 @@ Outcome solve(const Model& model, const Observer& observer);
 /// Stresses and strains of a state, as far as they are asked for.
 ElementResults element_results(const Model& model, const State& state, const ElementRequest& request = {});
 
-/// A field at cells recovered at the nodes: mean over the elements of each region around a node, weighted by volume;
+/// A field at cells recovered at nodes, by region, exact where linear (Zienkiewicz and Zhu 1992, see recover.cpp);
 /// at a node between regions the mean of all. values: #cells x components -> #points x components.
 std::vector<double> recover_at_nodes(const Model& model, const std::vector<double>& values, int components);
 
