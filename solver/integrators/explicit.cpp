@@ -140,7 +140,7 @@ struct Explicit {
     if (result.stop == Stop::converged) return true;
     run.now = before;
     // Bodies stiffen as they deform: the step may have outgrown the limit since it was last looked at.
-    if (!stable(step, supports.fixed, loads)) return false;
+    if (!stable(step, supports.fixed, loads, 0)) return false;
     explain(run, result, -1);
     if (run.model.settings.allow_unstable)
       run.outcome.diagnosis += "; the time step was not checked, as allowUnstable asks for";
