@@ -209,8 +209,8 @@ void check_problem(const Model& model) {
                     name(settings.integrator)));
   if (settings.linear_solver == LinearSolver::cg)
     throw Error(
-        "linearSolver=\"CG\" needs a positive definite matrix, which formulation=\"mixed\" does not give; choose "
-        "linearSolver=\"direct\"");
+        "linearSolver=\"CG\" (and \"GMRES\", which is taken as it) needs a positive definite matrix, which "
+        "formulation=\"mixed\" does not give; choose linearSolver=\"direct\"");
 }
 
 }  // namespace msml::fe

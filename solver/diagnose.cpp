@@ -12,6 +12,8 @@ namespace {
 std::string advice(const Run& run, const IncrementResult& result) {
   const bool loaded_in_parts = run.model.settings.integrator == Integrator::static_;
   const std::string smaller = loaded_in_parts ? "more loadSteps, or smaller loads" : "a smaller dt";
+  if (run.equations.numbering().scalar && result.stop == Stop::indefinite_tangent)
+    return "the coefficient is not positive everywhere, so that there is no single answer: check it";
   // Supports that made the matrix regular once hold the body.
   const bool was_regular = result.residuals.size() > 1 || run.now.increment > 0;
   switch (result.stop) {
@@ -36,6 +38,7 @@ std::string advice(const Run& run, const IncrementResult& result) {
         return "the body lost its stiffness on the way: the loads pass a limit point, or the law softens without end. "
                "Try " +
                smaller + ", arcLength=\"true\", a dynamic timeIntegration, or another law";
+      if (run.equations.numbering().scalar) return "a part of the body has no fixedValue: give it one";
       return "either a part of the body can move freely: fix it, or join parts that touch only at a node or an edge; or "
              "its stiffnesses lie too far apart to be told from nothing: flat elements, a poissonRatio too near 0.5";
     case Stop::out_of_memory:

@@ -106,6 +106,7 @@ struct Origin {
   const Law& law;
   Formulation formulation;
   const double* history;
+  const double* energy;  ///< stored, of remembered points; null where it is not known
 };
 
 void measure_law(const ElementPoints& points, const Origin& origin, std::size_t cell, ElementResults& results) {
@@ -120,7 +121,7 @@ void measure_law(const ElementPoints& points, const Origin& origin, std::size_t 
     const double share = points.weight[q] / volume;
     add_six(measures.cauchy, q, share, results.cauchy.data() + 6 * cell);
     add_six(measures.strain, q, share, results.strain.data() + 6 * cell);
-    results.energy_density[cell] += share * measures.energy[q];
+    results.energy_density[cell] += share * (origin.energy ? origin.energy[q] : measures.energy[q]);
   }
 }
 
@@ -245,14 +246,15 @@ ElementResults element_results(const Model& model, const State& state, const Ele
     const std::shared_ptr<const Elements> elements = state.elements ? state.elements : make_elements(model);
     const Numbering& numbering = elements->numbering();
     Vector u = to_vector(numbering, state.displacement);
-    if (numbering.mixed()) put_pressures(numbering, state.pressure, u);
+    put_corner_pressures(numbering, state.corner_pressure, u);
     elements->visit_points(u, [&](std::size_t e, const ElementPoints& points) {
       const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
       const std::span<const Vec3> places(points.place, static_cast<std::size_t>(points.count));
       const auto law = law_of_points(model, region, numbering.elements[e], places);
       const bool remembers = state.history_stress && !region.prony.g.empty();
-      const std::size_t offset = 6 * e * static_cast<std::size_t>(points.count);
-      const Origin origin{*law, model.formulation, remembers ? state.history_stress->data() + offset : nullptr};
+      const std::size_t offset = e * static_cast<std::size_t>(points.count);
+      const Origin origin{*law, model.formulation, remembers ? state.history_stress->data() + 6 * offset : nullptr,
+                          remembers && state.history_energy ? state.history_energy->data() + offset : nullptr};
       measure_element(points, origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
     });
   });

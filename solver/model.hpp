@@ -213,9 +213,8 @@ struct Settings {
   Integrator integrator = Integrator::implicit_euler;
   LinearSolver linear_solver = LinearSolver::automatic;
   Preconditioner preconditioner = Preconditioner::automatic;
-  double damping_mass = 0;  ///< Rayleigh alpha, 1/time, >= 0
-  double damping_stiffness =
-      0;  ///< Rayleigh beta, time, >= 0; of the semidefinite tangent at the start of the time step
+  double damping_mass = 0;       ///< Rayleigh alpha, 1/time, >= 0
+  double damping_stiffness = 0;  ///< Rayleigh beta, time, >= 0; of the semidefinite tangent, which turns with the body
   bool lumped_mass = false;
   int newton_iterations = 25;  ///< at most; 1 = one linear solve per step, taken as it is
   double tolerance = 1e-8;     ///< residual relative to the loads
@@ -249,15 +248,18 @@ struct Model {
   Points initial_displacement = {}, initial_velocity = {};  ///< #points x 3; empty: zero
   std::vector<Step> steps;
   Settings settings;
+  bool stored_energies = true;  ///< of viscoelastic regions, see PronyHistory; their elastic energy is not wanted else
   /// Throws Error on what cannot be solved: an inverted reference element, a static body free to move, …
   void check() const;
 };
 
 /// What a state holds, and what went in and out since the start. Loads given as functions and constants both do work.
 struct Energies {
-  double elastic = 0, kinetic = 0;
-  double external_work = 0;  ///< of loads and moved supports, by the trapezoidal rule over the increments
-  double dissipated = 0;     ///< by Rayleigh damping and dampers, the same way
+  double elastic = 0, kinetic = 0;  ///< elastic: stored, in viscoelastic regions too
+  double external_work = 0;         ///< of loads and moved supports, by the trapezoidal rule over the increments
+  /// By Rayleigh damping and dampers, the same way; in viscoelastic regions what the work of the internal forces, the
+  /// same way, leaves beside the stored energy.
+  double dissipated = 0;
   Vec3 momentum = Vec3::Zero(), angular_momentum = Vec3::Zero();  ///< about the origin, of the deformed body
 };
 
@@ -276,6 +278,12 @@ struct State {
   std::shared_ptr<const std::vector<double>> history_stress = nullptr;
   std::vector<double> pressure = {};  ///< mixed elements: #points, positive in compression; empty otherwise
   double load_factor = 1;             ///< statics: the share of this step's loads that acts
+  /// Mixed elements: pressure of each additional node, in solver order. Regions have their own at corners that they
+  /// share, where `pressure` is the mean of them.
+  std::vector<double> corner_pressure = {};
+  /// Viscoelastic regions: stored energy per reference volume at the points of history_stress; null too without
+  /// Model::stored_energies.
+  std::shared_ptr<const std::vector<double>> history_energy = nullptr;
   /// The elements that the state was computed with, so that its measures need not prepare them again; may be null.
   std::shared_ptr<const Elements> elements = nullptr;
 };

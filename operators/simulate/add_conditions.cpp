@@ -145,9 +145,10 @@ void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe
   std::vector<fe::Step>& steps = model.steps;
   std::vector<Placed> placed;
   collect(root, "", placed);
+  const Surroundings around{body.kind, body.scalar, changes_thickness(model), &model.settings};
   std::vector<std::vector<fe::Prescribed>> lasting(steps.size());
   for (const Placed& each : placed) {
-    check_unknown(*each.record, body.scalar);
+    check_condition(*each.record, around);
     const Condition condition = make<ConditionBuilder>(*each.record)(body, reporter);
     if (const auto* start = std::get_if<InitialState>(&condition.what)) {
       start_with(model, *start);

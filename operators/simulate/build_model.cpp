@@ -3,7 +3,10 @@
 #include "operators/simulate/build_model.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
+#include "operators/simulate/idle_attributes.hpp"
 #include "operators/simulate/records.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/materials/law.hpp"
@@ -27,22 +30,56 @@ std::vector<fe::Step> build_steps(const Record& args) {
   return steps;
 }
 
-void note_gravity(const std::vector<const Record*>& steps, Reporter& reporter) {
+void note_gravity(const std::vector<const Record*>& steps, CellKind kind, Reporter& reporter) {
+  const bool felt = kind == CellKind::vertex || dimension(kind) == 3;
   for (const Record* record : steps)
     if (const int slot = record->description->find("gravity");
         slot >= 0 && !record->given[static_cast<std::size_t>(slot)])
-      reporter.note(fmt::format("{}: no gravity given, so it is (0, 0, -9.81) as in MSML", located(*record)));
+      reporter.note(fmt::format("{}: no gravity given, so it is (0, 0, -9.81) as in MSML{}", located(*record),
+                                felt ? "" : ", which a body that does not move along z does not feel"));
+}
+
+/// Time matters to viscoelastic regions, in statics too.
+void tell_of_time(const fe::Model& model, Reporter& reporter) {
+  double shortest = std::numeric_limits<double>::infinity();
+  for (const fe::Region& region : model.regions)
+    for (const double tau : region.prony.tau) shortest = std::min(shortest, tau);
+  if (!std::isfinite(shortest)) return;
+  const bool parts = model.settings.integrator == fe::Integrator::static_;
+  for (const fe::Step& step : model.steps) {
+    const double dt = parts ? step.dt * step.count / model.settings.load_steps : step.dt;
+    if (parts)
+      reporter.note(
+          fmt::format("step '{}': prony relaxes over dt * iterations = {:g}, in which the loads grow in {} of {:g}",
+                      step.name, step.dt * step.count, counted(model.settings.load_steps, "part"), dt));
+    if (dt > shortest && !(model.settings.adaptive_step && !fe::is_dynamic(model.settings.integrator)))
+      reporter.warn(fmt::format(
+          "step '{}': its time steps of {:g} are longer than the shortest tau of prony, {:g}: what happens "
+          "inside of a step is taken as linear in time. Take {}",
+          step.name, dt, shortest, parts ? "more loadSteps, or timeIntegration = \"quasiStatic\"" : "a smaller dt"));
+  }
+}
+
+bool wants_energy(const OutputRequest& output) {
+  return output.kind == OutputKind::energies ||
+         std::any_of(output.fields.begin(), output.fields.end(),
+                     [](const std::string& field) { return field.starts_with("energyDensity"); });
 }
 
 }  // namespace
 
-void check_gravity(const Record& step, bool scalar) {
+void check_gravity(const Record& step, bool scalar, CellKind kind) {
   const int slot = step.description->find("gravity");
-  if (!scalar || slot < 0 || !step.given[static_cast<std::size_t>(slot)]) return;
+  if (slot < 0 || !step.given[static_cast<std::size_t>(slot)]) return;
   const Formulas& gravity = step[Key<Formulas>{slot}];
-  if (!std::all_of(gravity.begin(), gravity.end(), [](const Formula& g) { return g.constant() && g.number == 0; }))
+  const auto zero = [](const Formula& g) { return g.constant() && g.number == 0; };
+  if (scalar && !std::all_of(gravity.begin(), gravity.end(), zero))
     refuse(step,
            "gravity has no meaning where the unknown is a number (diffusionMaterial): leave it out, or take 0 0 0");
+  const int axes = kind == CellKind::vertex ? 3 : dimension(kind);
+  if (!std::all_of(gravity.begin() + axes, gravity.end(), zero))
+    refuse(step, fmt::format("gravity has a part along {}, but {}: write 0 there", "?yz"[axes],
+                             axes == 1 ? "lines move along x alone" : "plane bodies move along x and y alone"));
 }
 
 Simulation build_model(const Record& args, Reporter& reporter, int threads) {
@@ -69,9 +106,12 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   body.scalar = fe::is_scalar(model);
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);
-  for (const Record* step : all_of(args, "step")) check_gravity(*step, body.scalar);
-  if (!body.scalar) note_gravity(all_of(args, "step"), reporter);
+  for (const Record* step : all_of(args, "step")) check_gravity(*step, body.scalar, body.kind);
+  if (!body.scalar) note_gravity(all_of(args, "step"), body.kind, reporter);
   add_conditions(object, body, reporter, model);
+  warn_of_idle(args, model.settings, body.scalar, reporter);
+  tell_of_time(model, reporter);
+  model.stored_energies = std::any_of(simulation.outputs.begin(), simulation.outputs.end(), wants_energy);
   return simulation;
 }
 

@@ -29,8 +29,9 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads);
 /// A body of particles has point masses instead; see build_masses.
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
 
-/// Throws Error at the step's place where it gives a gravity other than 0 to a scalar problem.
-void check_gravity(const Record& step, bool scalar);
+/// Throws Error at the step's place where it gives a gravity other than 0 to a scalar problem, or along an axis that
+/// the elements (vertex: particles) do not move along.
+void check_gravity(const Record& step, bool scalar, CellKind kind);
 
 /// Its label, or "region2" for the second without one.
 std::string region_name(const Record& region, std::size_t position);

@@ -53,9 +53,11 @@ std::vector<std::string> check_warnings(const Simulation& simulation, const fe::
                     check.smallest_J, near_inversion));
   if (check.damped_per_cycle > tolerable_damping)
     warnings.push_back(
-        fmt::format("the time step damps the lowest period, {:.3g}, by {:.3g} % a cycle. Take dt below "
+        fmt::format("the time step damps the lowest period, {:.3g}, by {:.3g} % a cycle. Take {}dt below "
                     "{:.2g}, or timeIntegration = \"Newmark\"",
-                    check.lowest_period, 100 * check.damped_per_cycle, tolerable_step(check.lowest_period)));
+                    check.lowest_period, 100 * check.damped_per_cycle,
+                    simulation.model.settings.adaptive_step ? "a smaller stepTolerance, or " : "",
+                    tolerable_step(check.lowest_period)));
   if (outcome.cg_gave_up)
     warnings.push_back(
         "conjugate gradients missed linearTolerance, so the matrix was factorised from then on. Use "

@@ -9,6 +9,7 @@
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
+#include "operators/simulate/region_materials.hpp"
 #include "solver/combinations.hpp"
 #include "solver/materials/fibres.hpp"
 #include "solver/materials/law.hpp"
@@ -74,6 +75,7 @@ Part part_of(const Record& record, std::size_t position, bool particles, const R
   const Record& material = *part.material;
   attempt(material, fault, [&] {
     check_material(material, particles);
+    check_sources(material);
     if (material.tag() != "pointMass" && complete(material)) part.region.law = make<LawPtr>(material);
   });
   if (std::any_of(material.values.begin(), material.values.end(), varies))
@@ -123,15 +125,40 @@ void examine_combinations(const Record& args, const Outline& outline, const Repo
   attempt(solver != nullptr ? *solver : args, fault, [&] { fe::check_problem(model); });
 }
 
-/// Conditions against the unknown of the laws, where a law is known.
+/// Conditions against the elements, the laws and the solver, as far as these are known.
 void examine_conditions(const Record& args, const Outline& outline, const Report& fault) {
   const auto known = std::find_if(outline.parts.begin(), outline.parts.end(),
                                   [](const Part& part) { return part.region.law != nullptr; });
-  if (known == outline.parts.end()) return;
-  const bool scalar = known->region.law->components() == 1;
+  Surroundings around{
+      .kind = outline.kind, .thinning = changes_thickness(outline.model), .settings = &outline.model.settings};
+  if (known != outline.parts.end()) around.scalar = known->region.law->components() == 1;
   for (const Record* condition : all_of(args, "constraint"))
-    attempt(*condition, fault, [&] { check_unknown(*condition, scalar); });
-  for (const Record* step : all_of(args, "step")) attempt(*step, fault, [&] { check_gravity(*step, scalar); });
+    attempt(*condition, fault, [&] { check_condition(*condition, around); });
+  for (const Record* step : all_of(args, "step"))
+    attempt(*step, fault, [&] { check_gravity(*step, around.scalar.value_or(false), outline.kind); });
+}
+
+/// A damper somewhere: forward Euler lives on them.
+bool damps(const Record& args) {
+  for (const Record* condition : all_of(args, "constraint"))
+    for (const char* attribute : {"damping", "rayleighStiffnes"})
+      if (const int slot = condition->description->find(attribute); slot >= 0)
+        if (const auto* value = std::get_if<double>(&condition->values[static_cast<std::size_t>(slot)]))
+          if (*value > 0) return true;
+  return false;
+}
+
+void examine_forward_euler(const Record& args, const Outline& outline, const Report& fault) {
+  const fe::Settings& s = outline.model.settings;
+  const Record* solver = first_of(args, "solver");
+  if (s.integrator != fe::Integrator::forward_euler || s.allow_unstable || solver == nullptr) return;
+  if (s.damping_mass > 0 || s.damping_stiffness > 0 || outline.kind == CellKind::vertex || damps(args)) return;
+  attempt(*solver, fault, [&] {
+    refuse(*solver,
+           "forwardEuler is unstable at any dt without damping: give dampingRayleighRatioMass or "
+           "dampingRayleighRatioStiffness, take symplecticEuler or an implicit timeIntegration, or "
+           "allowUnstable=\"true\"");
+  });
 }
 
 }  // namespace
@@ -140,6 +167,7 @@ void examine_scene(const Record& args, const Report& fault) {
   const Outline outline = outline_of(args, fault);
   examine_combinations(args, outline, fault);
   examine_conditions(args, outline, fault);
+  examine_forward_euler(args, outline, fault);
   for (const Record* record : all_of(args, "output"))
     if (complete(*record)) attempt(*record, fault, [&] { make<OutputRequest>(*record); });
 }

@@ -19,7 +19,7 @@ std::vector<FieldFacts> with_nodal() {
       {"principalStress", 3, false, "eigenvalues of stress, the largest first"},
       {"pressure", 1, false,
        "minus a third of the trace of stress; of formulation=\"mixed\" at nodes: the unknown, minus the derivative of "
-       "the volumetric energy by its measure of volume"},
+       "the volumetric energy by its measure of volume, and where regions meet the mean of theirs"},
       {"firstPiola", 9, false, "first Piola stress: force per reference area"},
       {"secondPiola", 6, false, "second Piola stress F^-1 P"},
       {"strain", 6, false,
@@ -27,7 +27,7 @@ std::vector<FieldFacts> with_nodal() {
       {"greenLagrange", 6, false, "Green-Lagrange strain (F^T F - I)/2"},
       {"deformationGradient", 9, false, "F = dx/dX"},
       {"J", 1, false, "smallest det F of the element"},
-      {"energyDensity", 1, false, "elastic energy per reference volume"},
+      {"energyDensity", 1, false, "stored energy per reference volume"},
       {"fiberStretch", 1, false, "length over reference length of the first family of fibres; 1 where there is none"}};
   const std::size_t count = all.size();
   for (std::size_t i = 0; i < count; ++i)

@@ -52,7 +52,9 @@ std::vector<FormulationName> formulations(CellKind kind) {
   if (kind == CellKind::tet10)
     found.push_back(
         {"mixed", fe::Formulation::mixed,
-         "mixed: with a pressure linear in each element, for materials near incompressible or incompressible"});
+         "mixed: with a pressure linear in each element, for materials near incompressible or incompressible; the "
+         "pressure is continuous inside a region and jumps between regions, so give what jumps a region of its own "
+         "rather than an entry of `fields`"});
   if (kind == CellKind::tet10)
     found.push_back({"singleRotation", fe::Formulation::single_rotation,
                      "singleRotation: linear elasticity turned with the four corners, stiffness made once (tet10SR)"});
@@ -169,8 +171,10 @@ std::vector<Factory<MeshChoice>> mesh_kinds() {
 
 Factory<double> mass() {
   Factory<double> tag("mass", "mass", "The density of a region.");
-  const auto density = tag.parameter(
-      "massDensity", {.unit = "mass/volume", .range = positive(), .fallback = 1.0, .doc = "per reference volume"});
+  const auto density = tag.parameter("massDensity", {.unit = "mass/volume",
+                                                     .range = positive(),
+                                                     .fallback = 1.0,
+                                                     .doc = "per reference volume, one number for the region"});
   tag.build([=](const Record& record) { return record[density]; });
   return tag;
 }

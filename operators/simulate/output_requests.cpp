@@ -160,7 +160,9 @@ Factory<OutputRequest> energies() {
   tag.produces(Type::file);
   tag.note(
       "File: ID.csv with the columns time, elastic and kinetic energy, work of loads and moved supports, energy "
-      "dissipated by damping, momentum and angular momentum about the origin, and in statics the share of the loads.");
+      "dissipated by damping and by viscoelastic regions (the work of their stresses that is not stored: by Maxwell's "
+      "springs and dampers, exact for laws linear in their strain), momentum and angular momentum about the origin, "
+      "and in statics the share of the loads.");
   tag.build([=](const Record& record) {
     return OutputRequest{.id = file_stem(record, id),
                          .every = static_cast<int>(record[every]),
@@ -186,8 +188,8 @@ Factory<OutputRequest> section() {
       "centroid.");
   tag.note(
       "The force is the work of the stress on the elements that the plane cuts, as their corners on the side of the "
-      "normal move by one unit: it balances the loads and reactions of that side. So does the moment "
-      "of quadratic elements; that of linear ones differs in second order of their size. A "
+      "normal move by one unit, and the moment as they turn: both balance the loads and reactions on the nodes of "
+      "that side, on coarse meshes too (of quadratic elements at finite strains the moment up to their size). A "
       "supportingMesh carries its part.");
   tag.build([=](const Record& record) {
     OutputRequest request{.id = file_stem(record, id),

@@ -22,6 +22,10 @@ Factory<fe::Prony> prony() {
                 .doc = "which stiffness the law beside it has: that of a sudden load, or that after a long time"});
   tag.note(
       "The second Piola stress is the convolution of G(t) = 1 - sum g (1 - exp(-t / tau)) with the rate of the law's.");
+  tag.note(
+      "Time passes in statics too: each step takes dt times iterations, over which the loads grow. The stress of the "
+      "law "
+      "is taken as linear in time over each time step, or each of loadSteps: choose them shorter than tau.");
   tag.build([=](const Record& record) {
     fe::Prony series{record[g], record[tau], record[given] == "longTerm"};
     if (series.g.size() != series.tau.size())

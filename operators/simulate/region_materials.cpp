@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -54,8 +55,15 @@ void add_directions(const Record& material, const Mesh& mesh, std::vector<Source
   }
 }
 
+/// An attribute and the name of the cell field that it comes from.
+struct Named {
+  std::size_t slot;
+  std::string field;
+};
+
 /// The attribute `fields`: "youngModulus=E mu=stiffness".
-void add_numbers(const Record& material, const Mesh& mesh, std::vector<Source>& sources) {
+std::vector<Named> named_numbers(const Record& material) {
+  std::vector<Named> named;
   std::string list = text_of(material, "fields");
   std::replace(list.begin(), list.end(), ',', ' ');
   const std::vector<Slot>& slots = material.description->slots();
@@ -70,9 +78,28 @@ void add_numbers(const Record& material, const Mesh& mesh, std::vector<Source>& 
     const int slot = material.description->find(attribute);
     if (slot < 0 || slots[static_cast<std::size_t>(slot)].type != Type::formula)
       refuse(material, fmt::format("fields: '{}' is no attribute that takes a number", attribute));
-    sources.push_back(
-        {static_cast<std::size_t>(slot), &field_of(material, attribute, part.substr(equals + 1), mesh, 1)});
+    named.push_back({static_cast<std::size_t>(slot), part.substr(equals + 1)});
   }
+  return named;
+}
+
+void add_numbers(const Record& material, const Mesh& mesh, std::vector<Source>& sources) {
+  for (const auto& [slot, field] : named_numbers(material))
+    sources.push_back({slot, &field_of(material, material.description->slots()[slot].name, field, mesh, 1)});
+}
+
+/// A direction that is three expressions, at least one of them of the place.
+bool of_expressions(std::string text) {
+  std::replace(text.begin(), text.end(), ',', ' ');
+  std::istringstream words(text);
+  int count = 0;
+  bool varies = false;
+  for (std::string word; words >> word; ++count) {
+    const FormulaFacts facts = examine(word);
+    if (!facts.problem.empty()) return false;
+    varies = varies || facts.of_position || facts.of_time;
+  }
+  return count == 3 && varies;
 }
 
 /// The record with an element's own values.
@@ -139,7 +166,21 @@ LawPtr side_by_side(const Record& material, std::vector<LawPtr> laws) {
 
 }  // namespace
 
+void check_sources(const Record& material) {
+  const std::vector<Slot>& slots = material.description->slots();
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    const auto* text = std::get_if<std::string>(&material.values[s]);
+    if (slots[s].unit == "direction" && text != nullptr && of_expressions(*text))
+      refuse(material, fmt::format("{} = '{}': a direction is three numbers, or the name of a cell field with three "
+                                   "components where it varies; expressions are not taken",
+                                   slots[s].name, *text));
+  }
+  named_numbers(material);
+  expressions_of(material);
+}
+
 void set_material(const Record& material, const Body& body, fe::Region& region) {
+  check_sources(material);
   std::vector<Source> sources;
   add_directions(material, *body.mesh, sources);
   add_numbers(material, *body.mesh, sources);

@@ -116,7 +116,8 @@ std::vector<double> sides(const Body& body, const Plane& plane) {
 /// An element in which that function is not constant.
 struct Bridge {
   int element;
-  Vec3 slope;  ///< its gradient, from the corners
+  Vec3 slope;                               ///< its gradient, from the corners
+  Eigen::Matrix<double, 3, 4> gradients{};  ///< of the barycentric coordinates
 };
 
 std::vector<Bridge> bridges(const Mesh& mesh, const std::vector<int>& elements, const std::vector<double>& side) {
@@ -129,7 +130,11 @@ std::vector<Bridge> bridges(const Mesh& mesh, const std::vector<int>& elements, 
       edges.row(a - 1) = mesh.points.row(nodes[a]) - mesh.points.row(nodes[0]);
       steps[a - 1] = side[static_cast<std::size_t>(nodes[a])] - side[static_cast<std::size_t>(nodes[0])];
     }
-    if (steps.norm() > 0) found.push_back({element, edges.inverse() * steps});
+    if (!(steps.norm() > 0)) continue;
+    const Mat3 inverse = edges.inverse();
+    Bridge bridge{element, inverse * steps};
+    bridge.gradients << -inverse.rowwise().sum(), inverse;
+    found.push_back(bridge);
   }
   return found;
 }
@@ -162,13 +167,31 @@ Mat3 tensor(const std::vector<double>& values, std::size_t i) {
 constexpr fe::ElementRequest needed{
     .law = false, .J = false, .rotation = false, .tensors = true, .volume = true, .stress_moments = true};
 
-/// Adds the work of the stress as the function moves the body: along each axis, and turning about `centre`.
+/// Moments of the nodal forces of a linear element about `centre`, with those arms. With the arms of a rigid motion
+/// cut off node by node these are in balance with the loads on the nodes of one side, on the coarsest of meshes.
+Vec3 nodal_moment(const Mesh& mesh, const Bridge& bridge, const fe::ElementResults& results, const Points& arms) {
+  const auto e = static_cast<std::size_t>(bridge.element);
+  const Mat3 P = tensor(results.first_piola, e);
+  Vec3 sum = Vec3::Zero();
+  for (int a = 0; a < corner_count(mesh.kinds[e]); ++a) {
+    const Vec3 arm = arms.row(mesh.cell(bridge.element)[a]).transpose();
+    sum += arm.cross(results.volume[e] * (P * bridge.gradients.col(a)));
+  }
+  return sum;
+}
+
+/// Adds the work of the stress as the function moves the body: along each axis, and turning about `centre`. `arms` are
+/// the function times the positions seen from there.
 void add_pull(const Mesh& mesh, const std::vector<Bridge>& bridges, const fe::ElementResults& results, const Points& x,
-              const Vec3& centre, Pull& sum) {
+              const Vec3& centre, const Points& arms, Pull& sum) {
   for (const Bridge& bridge : bridges) {
     const auto e = static_cast<std::size_t>(bridge.element);
     const Vec3 pull = results.volume[e] * (tensor(results.first_piola, e) * bridge.slope);
     sum.force += pull;
+    if (node_count(mesh.kinds[e]) == corner_count(mesh.kinds[e])) {
+      sum.moment += nodal_moment(mesh, bridge, results, arms);
+      continue;
+    }
     sum.moment += (mean_over(mesh, bridge.element, x) - centre).cross(pull);
     for (std::size_t j = 0; j < 3; ++j)
       sum.moment +=
@@ -191,19 +214,21 @@ class Inner {
     bridges_ = bridges(*inlay.mesh, inlay.region.elements, own);
   }
 
-  /// Of a displacement of the body's points.
-  void add(const Points& displacement, const Vec3& centre, Pull& sum) const {
+  /// Of a displacement and the arms of the body's points.
+  void add(const Points& displacement, const Vec3& centre, const Points& arms, Pull& sum) const {
     fe::State state;
     state.elements = elements_;
     state.displacement = Points::Zero(model_.mesh->points.rows(), 3);
+    Points own = state.displacement;
     for (std::size_t n = 0; n < ties_.size(); ++n)
       follow(n, [&](int node, double weight) {
         state.displacement.row(static_cast<Eigen::Index>(n)) += weight * displacement.row(node);
+        own.row(static_cast<Eigen::Index>(n)) += weight * arms.row(node);
       });
     const Points& X = model_.mesh->points;
     const bool small = model_.regions.front().law->small_strain();
     add_pull(*model_.mesh, bridges_, fe::element_results(model_, state, needed), small ? X : X + state.displacement,
-             centre, sum);
+             centre, own, sum);
   }
 
  private:
@@ -231,10 +256,10 @@ class SectionWriter final : public TableWriter {
     check(*request.record);
     const Plane plane{*request.point, normal_, 1e-10 * diagonal(*body_.mesh)};
     pieces_ = cut(body_, simulation.model.thickness, plane);
-    const std::vector<double> side = sides(body_, plane);
-    bridges_ = bridges(*body_.mesh, body_.elements, side);
+    side_ = sides(body_, plane);
+    bridges_ = bridges(*body_.mesh, body_.elements, side_);
     for (const fe::Inlay& inlay : simulation.model.inlays)
-      inlays_.push_back(std::make_unique<Inner>(*body_.mesh, inlay, side, simulation.model.settings.threads));
+      inlays_.push_back(std::make_unique<Inner>(*body_.mesh, inlay, side_, simulation.model.settings.threads));
     if (pieces_.empty())
       refuse(*request.record, fmt::format("the plane through {} with the normal {} misses the body, which spans {}",
                                           place(*request.point), place(normal_), bounds(body_)));
@@ -255,8 +280,10 @@ class SectionWriter final : public TableWriter {
     const fe::ElementResults results = fields.measure(needed);
     const auto [area, centroid] = deformed(results.deformation_gradient, x);
     Pull sum;
-    add_pull(*body_.mesh, bridges_, results, x, centroid, sum);
-    for (const auto& inlay : inlays_) inlay->add(fields.positions() - body_.mesh->points, centroid, sum);
+    Points arms = x.rowwise() - centroid.transpose();
+    for (Eigen::Index n = 0; n < arms.rows(); ++n) arms.row(n) *= side_[static_cast<std::size_t>(n)];
+    add_pull(*body_.mesh, bridges_, results, x, centroid, arms, sum);
+    for (const auto& inlay : inlays_) inlay->add(fields.positions() - body_.mesh->points, centroid, arms, sum);
     const Vec3 &f = sum.force, &m = sum.moment;
     return {{state.time, area, f[0], f[1], f[2], m[0], m[1], m[2]}};
   }
@@ -282,6 +309,7 @@ class SectionWriter final : public TableWriter {
   const Body& body_;
   Vec3 normal_;
   std::vector<Piece> pieces_;
+  std::vector<double> side_;
   std::vector<Bridge> bridges_;
   std::vector<std::unique_ptr<const Inner>> inlays_;  // in their places: they hold what points at themselves
 };

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "operators/simulate/conditions/condition.hpp"
+#include "operators/simulate/idle_attributes.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/settings.hpp"
 
@@ -45,13 +46,6 @@ const std::map<std::string, fe::Preconditioner>& preconditioners() {
       {"multigrid", fe::Preconditioner::multigrid},
       {"auto", fe::Preconditioner::automatic}};
   return known;
-}
-
-/// Names of other programs are capitals: SGAUSS_SEIDEL, ILU2; ours start in lower case.
-bool of_other_program(const std::string& name) {
-  return name.empty() || std::all_of(name.begin(), name.end(), [](char c) {
-           return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-         });
 }
 
 /// What is wrong with the name of a preconditioner.
@@ -98,7 +92,12 @@ void describe_method(Factory<SettingsBuilder>& tag, Keys& keys) {
       {.unit = "1/time", .range = nonnegative(), .fallback = 0.0, .doc = "damping matrix alpha M + beta K: alpha"});
   keys.damping_stiffness = tag.parameter(
       "dampingRayleighRatioStiffness",
-      {.unit = "time", .range = nonnegative(), .fallback = 0.0, .doc = "damping matrix alpha M + beta K: beta"});
+      {.unit = "time",
+       .range = nonnegative(),
+       .fallback = 0.0,
+       .doc =
+           "damping matrix alpha M + beta K: beta. K turns with the body: it is that of the end of the time step, with "
+           "explicit methods and one linear solve per step that of its start"});
 }
 
 void describe_method_numbers(Factory<SettingsBuilder>& tag, Keys& keys) {
@@ -119,7 +118,9 @@ void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
   const fe::Settings usual;
   keys.adaptive = tag.parameter<bool>(
       "adaptiveStep",
-      {.fallback = false, .doc = "shorter and longer steps between the reported states, by iterations and error"});
+      {.fallback = false,
+       .doc = "shorter and longer steps between the reported states, by iterations and error; with prony in "
+              "statics at most half its shortest tau"});
   keys.step_tolerance = tag.parameter(
       "stepTolerance", {.range = open(0, 1),
                         .fallback = usual.step_tolerance,
@@ -218,6 +219,12 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
 
 }  // namespace
 
+bool of_other_program(const std::string& name) {
+  return name.empty() || std::all_of(name.begin(), name.end(), [](char c) {
+           return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+         });
+}
+
 Factory<SettingsBuilder> solver() {
   Factory<SettingsBuilder> tag("solver", "solver", "How the equations are integrated and solved.");
   Keys keys;
@@ -243,13 +250,20 @@ Factory<fe::Step> step() {
                                           .counts = {3},
                                           .doc = "acceleration on all masses, 3 numbers or expressions; a step that "
                                                  "says nothing has earth's, in metres and seconds"});
+  const auto table = add_table(tag, "gravity");
   tag.build([=](const Record& record) {
     const std::vector<Function> g = functions(record, gravity);
     fe::Step made{.name = record.has(name) ? record[name] : record.id,
                   .dt = record[dt],
                   .count = static_cast<int>(record[iterations]),
                   .gravity = Vec3::Zero()};
-    made.gravity_steady = !g[0].of_time() && !g[1].of_time() && !g[2].of_time();
+    made.gravity_steady = !record.has(table) && !g[0].of_time() && !g[1].of_time() && !g[2].of_time();
+    if (record.has(table)) {
+      made.gravity_function = [factor = read_table(record, table), vector = vector_of(g)](const Vec3& X, double t) {
+        return Vec3(factor(t) * vector(X, t));
+      };
+      return made;
+    }
     if (g[0].constant() && g[1].constant() && g[2].constant())
       made.gravity = vector_of(g)(Vec3::Zero(), 0);
     else

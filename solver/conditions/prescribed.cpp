@@ -84,9 +84,14 @@ Supports make_supports(const Step& step, const Numbering& numbering, const Vecto
       supports.moved_by[k] = -1;
     }
   Mask moves(size, 0);
-  for (std::size_t k = 0; k < size; ++k)
-    moves[k] = supports.fixed[k] && (supports.moved_by[k] >= 0 || supports.end[static_cast<Eigen::Index>(k)] != 0);
-  supports.slides = make_slides(step, numbering, supports.fixed, moves);
+  Vector first = supports.end;
+  for (std::size_t k = 0; k < size; ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (supports.ramped[k]) first[i] = supports.start[i];
+    if (!supports.fixed[k]) continue;
+    moves[k] = supports.moved_by[k] >= 0 ? 2 : supports.end[i] != 0 || first[i] != 0;
+  }
+  supports.slides = make_slides(step, numbering, {supports.fixed, moves, first, supports.end});
   return supports;
 }
 

@@ -198,6 +198,11 @@ void check_held(const Model& model, const Step& step) {
   for (const Part& part : parts) {
     if (part.points == 0) continue;
     const long motions = rank(part.all) - rank(part.absent), free = rank(part.all) - rank(part.held);
+    if (free > 0 && is_scalar(model))
+      throw Error(fmt::format(
+          "step '{}': nothing gives the level of the value of the part of {} nodes around ({:g} {:g} {:g}), "
+          "and its fluxes and sources do not sum to zero: give it a fixedValue, or balance them",
+          step.name, part.points, part.centre[0], part.centre[1], part.centre[2]));
     if (free > 0)
       throw Error(
           fmt::format("step '{}' is static, but {} of the {} rigid motions of the part of {} nodes around "

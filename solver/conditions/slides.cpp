@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -17,18 +18,29 @@ using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 Block block(BlockMatrix& A, int position) { return Block(A.values.data() + 9 * static_cast<std::size_t>(position)); }
 
 /// The part of a normal that supports do not hold already.
-Vec3 free_part(const Slide& slide, int point, int node, const Mask& fixed, const Mask& moves) {
+Vec3 free_part(const Slide& slide, int point, int node, const Held& held) {
   Vec3 n = slide.normal.normalized();
+  double first = 0, last = 0, size = 0;  // along the normal, at the start of the step and at its end
+  int moved = -1;
+  bool follows = false;
   for (int c = 0; c < 3; ++c) {
-    const auto k = static_cast<std::size_t>(3 * node + c);
-    if (!fixed[k]) continue;
-    if (moves[k] && std::abs(n[c]) > 1e-12)
-      throw Error(
-          fmt::format("node {} is in the plane of '{}', but a support moves it out of it along {}; take it out "
-                      "of the indices of one",
-                      point, slide.name, "xyz"[c]));
+    const int k = 3 * node + c;
+    if (!held.fixed[static_cast<std::size_t>(k)]) continue;
+    if (const char moves = held.moves[static_cast<std::size_t>(k)]; moves != 0 && std::abs(n[c]) > 1e-12) {
+      moved = c;
+      follows = follows || moves > 1;
+      first += n[c] * held.first[k];
+      last += n[c] * held.last[k];
+      size = std::max({size, std::abs(held.first[k]), std::abs(held.last[k])});
+    }
     n[c] = 0;
   }
+  const bool inside = !follows && n.norm() < 1e-6 && std::max(std::abs(first), std::abs(last)) <= 1e-9 * size;
+  if (moved >= 0 && !inside)
+    throw Error(
+        fmt::format("node {} is in the plane of '{}', but a support moves it out of it along {}; take it out "
+                    "of the indices of one",
+                    point, slide.name, "xyz"[moved]));
   return n;
 }
 
@@ -65,14 +77,14 @@ void Slides::project(BlockMatrix& A) const {
   }
 }
 
-Slides make_slides(const Step& step, const Numbering& numbering, const Mask& fixed, const Mask& moves) {
+Slides make_slides(const Step& step, const Numbering& numbering, const Held& supports) {
   std::map<int, Mat3> held;  // sum of n n^T over orthonormal normals
   for (const Slide& slide : step.slides)
     for (const int point : slide.nodes) {
       const int node = numbering.number_of[static_cast<std::size_t>(point)];
       if (node < 0) continue;
       Mat3& N = held.try_emplace(node, Mat3::Zero()).first->second;
-      Vec3 n = free_part(slide, point, node, fixed, moves);
+      Vec3 n = free_part(slide, point, node, supports);
       n -= N * n;
       if (n.norm() < 1e-6) continue;  // held already
       n.normalize();

@@ -23,9 +23,16 @@ struct Slides {
   Vector removed(const Vector& v) const;
 };
 
+/// What supports do with the unknowns of a step.
+struct Held {
+  const Mask& fixed;
+  const Mask& moves;           ///< 0: to zero; 1: to other values; 2: as a function of time
+  const Vector &first, &last;  ///< values at the start of the step and at its end
+};
+
 /// The slides of a step. Normals of one node are made orthogonal, so that two planes leave a line and three hold it;
-/// components that `fixed` holds anyway are left to it. Throws Error where a support moves a node out of its plane:
-/// `moves` tells for each unknown whether its support gives anything but zero.
-Slides make_slides(const Step& step, const Numbering& numbering, const Mask& fixed, const Mask& moves);
+/// components that supports hold anyway are left to them. Throws Error where a support moves a node out of its plane,
+/// or may do so: it follows a function of time, or leaves a part of the normal free.
+Slides make_slides(const Step& step, const Numbering& numbering, const Held& supports);
 
 }  // namespace msml::fe

@@ -25,10 +25,12 @@ struct Numbering {
   std::vector<int> number_of;      ///< number of each mesh point, -1 without unknowns
   std::vector<int> element_nodes;  ///< numbers of the nodes of `elements`, element after element
   std::vector<std::array<int, 2>> links;  ///< pairs of numbered nodes that springs or inlays join
-  /// Mixed elements: mesh point of each additional node. These come after the nodes of the body; their first component
-  /// is a pressure, see pressure_scale, and the other two are fixed at zero.
+  /// Mixed elements: mesh point of each additional node. Each region has one at each of its corners, since the pressure
+  /// jumps where the material does. These come after the nodes of the body; their first component is a pressure, see
+  /// pressure_scale, and the other two are fixed at zero.
   std::vector<int> pressure_of;
-  double pressure_scale = 1;  ///< stress per unit of the first component
+  std::vector<int> pressure_nodes;  ///< mixed elements: the additional nodes of the corners of `elements`, four each
+  double pressure_scale = 1;        ///< stress per unit of the first component
   int body_nodes() const { return static_cast<int>(node_of.size()); }
   int nodes() const { return body_nodes() + static_cast<int>(pressure_of.size()); }
   bool mixed() const { return !pressure_of.empty(); }
@@ -55,9 +57,11 @@ std::vector<char> pressure_mask(const Numbering& numbering, bool all);
 Points to_points(const Numbering& numbering, const Vector& values);
 Vector to_vector(const Numbering& numbering, const Points& values);
 /// Pressure at the points of the mesh, positive in compression: minus the multiplier p of mixed elements, linear along
-/// edges with a mid node; empty for other elements. And back into a vector as to_vector makes it.
+/// edges with a mid node, the mean over the regions that meet there; empty for other elements.
 std::vector<double> to_pressures(const Numbering& numbering, const Vector& values);
-void put_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values);
+/// The same of each additional node, and back into a vector as to_vector makes it.
+std::vector<double> to_corner_pressures(const Numbering& numbering, const Vector& values);
+void put_corner_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values);
 
 /// What an assembly found on its way.
 struct Assembled {
@@ -97,6 +101,11 @@ class Elements {
   /// Their stress at the end of the last step, see State::history_stress; null where all regions are elastic.
   virtual std::shared_ptr<const std::vector<double>> history_stress() const { return nullptr; }
   virtual std::size_t bytes() const = 0;  ///< held beside the mesh and the pattern
+  /// Their stored energy at the end of the last step, see State::history_energy; null where nobody wants it.
+  virtual std::shared_ptr<const std::vector<double>> history_energy() const { return nullptr; }
+  /// What is stored at the end of the last step beside the energy that add_internal found there, which with a history
+  /// is the potential of the forces of that step.
+  virtual double stored_beside() const { return 0; }
   virtual const Numbering& numbering() const = 0;
   virtual const PatternPtr& pattern() const = 0;
 };

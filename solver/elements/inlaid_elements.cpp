@@ -129,6 +129,8 @@ class InlaidElements final : public Elements {
     for (const Inner& inner : inner_) sum += inner.bytes();
     return sum;
   }
+  std::shared_ptr<const std::vector<double>> history_energy() const override { return body_->history_energy(); }
+  double stored_beside() const override { return body_->stored_beside(); }
   const Numbering& numbering() const override { return body_->numbering(); }
   const PatternPtr& pattern() const override { return body_->pattern(); }
 

@@ -23,14 +23,12 @@ struct Result {
 
 /// The ten nodes of each element and the additional nodes of its corners.
 std::vector<int> with_pressure_nodes(const Numbering& numbering) {
-  std::vector<int> extra(static_cast<std::size_t>(numbering.body_nodes()), -1);
-  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
-    extra[static_cast<std::size_t>(numbering.number_of[static_cast<std::size_t>(numbering.pressure_of[k])])] =
-        numbering.body_nodes() + static_cast<int>(k);
   std::vector<int> list;
+  auto extra = numbering.pressure_nodes.begin();
   for (auto node = numbering.element_nodes.begin(); node != numbering.element_nodes.end(); node += body) {
     list.insert(list.end(), node, node + body);
-    for (int c = 0; c < corners; ++c) list.push_back(extra[static_cast<std::size_t>(node[c])]);
+    list.insert(list.end(), extra, extra + corners);
+    extra += corners;
   }
   return list;
 }

@@ -23,8 +23,8 @@ struct MixedBatch {
   BatchSplit law;
 };
 
-/// Stationary points of int rest(F) + p g(F) - p^2/(2 k) with the pressure p continuous and linear in each element: the
-/// perturbed Lagrangian, for k = infinity that of the constraint g = 0 (Sussman and Bathe 1987,
+/// Stationary points of int rest(F) + p g(F) - p^2/(2 k) with the pressure p linear in each element and continuous in
+/// each region: the perturbed Lagrangian, for k = infinity that of the constraint g = 0 (Sussman and Bathe 1987,
 /// doi 10.1016/0045-7949(87)90265-3; stable pair: Taylor and Hood 1973, doi 10.1016/0045-7930(73)90027-3).
 /// p = Numbering::pressure_scale times the first component of the additional node of each corner. The tangent is
 /// symmetric and indefinite. Want::definite_tangent leaves out p d2g/dF2.

@@ -77,13 +77,25 @@ void add_loose_parts(const Model& model, Numbering& numbering) {
     }
 }
 
-/// One additional node for each corner, in the order of the corners.
+/// One additional node for each corner of each region, region after region in the order of the corners.
 void add_pressure_nodes(Numbering& numbering, int nodes) {
-  std::vector<char> corner(numbering.node_of.size(), 0);
-  for (std::size_t k = 0; k < numbering.element_nodes.size(); ++k)
-    if (k % static_cast<std::size_t>(nodes) < 4) corner[static_cast<std::size_t>(numbering.element_nodes[k])] = 1;
-  for (std::size_t n = 0; n < corner.size(); ++n)
-    if (corner[n]) numbering.pressure_of.push_back(numbering.node_of[n]);
+  const std::size_t elements = numbering.elements.size();
+  const auto corner = [&](std::size_t e, int c) {
+    return static_cast<std::size_t>(
+        numbering.element_nodes[e * static_cast<std::size_t>(nodes) + static_cast<std::size_t>(c)]);
+  };
+  for (std::size_t first = 0, last = 0; first < elements; first = last) {
+    std::vector<int> extra(numbering.node_of.size(), -1);
+    for (last = first; last < elements && numbering.region_of[last] == numbering.region_of[first]; ++last)
+      for (int c = 0; c < 4; ++c) extra[corner(last, c)] = 0;
+    for (std::size_t n = 0; n < extra.size(); ++n) {
+      if (extra[n] < 0) continue;
+      extra[n] = numbering.nodes();
+      numbering.pressure_of.push_back(numbering.node_of[n]);
+    }
+    for (std::size_t e = first; e < last; ++e)
+      for (int c = 0; c < 4; ++c) numbering.pressure_nodes.push_back(extra[corner(e, c)]);
+  }
 }
 
 }  // namespace
@@ -173,18 +185,28 @@ std::vector<double> to_pressures(const Numbering& numbering, const Vector& value
     const int node = numbering.element_nodes[nodes * element + static_cast<std::size_t>(a)];
     return pressures[static_cast<std::size_t>(numbering.node_of[static_cast<std::size_t>(node)])];
   };
-  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
-    pressures[static_cast<std::size_t>(numbering.pressure_of[k])] =
-        -numbering.pressure_scale * values[3 * (numbering.body_nodes() + static_cast<int>(k))];
+  std::vector<int> regions(pressures.size(), 0);
+  const std::vector<double> own = to_corner_pressures(numbering, values);
+  for (std::size_t k = 0; k < own.size(); ++k) {
+    const auto point = static_cast<std::size_t>(numbering.pressure_of[k]);
+    const int before = regions[point]++;
+    pressures[point] += (own[k] - pressures[point]) / (before + 1);
+  }
   for (std::size_t e = 0; e < numbering.elements.size(); ++e)
     for (int m = 0; m < 6; ++m) at(e, 4 + m) = 0.5 * (at(e, edges[m][0]) + at(e, edges[m][1]));
   return pressures;
 }
 
-void put_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values) {
-  for (std::size_t k = 0; k < numbering.pressure_of.size(); ++k)
-    values[3 * (numbering.body_nodes() + static_cast<int>(k))] =
-        -pressures[static_cast<std::size_t>(numbering.pressure_of[k])] / numbering.pressure_scale;
+std::vector<double> to_corner_pressures(const Numbering& numbering, const Vector& values) {
+  std::vector<double> pressures;
+  for (int n = numbering.body_nodes(); n < numbering.nodes(); ++n)
+    pressures.push_back(-numbering.pressure_scale * values[3 * n]);
+  return pressures;
+}
+
+void put_corner_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values) {
+  for (std::size_t k = 0; k < pressures.size(); ++k)
+    values[3 * (numbering.body_nodes() + static_cast<int>(k))] = -pressures[k] / numbering.pressure_scale;
 }
 
 }  // namespace msml::fe

@@ -2,7 +2,9 @@
 // The exponential update of viscoelastic stresses.
 #include "solver/elements/prony_history.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <cmath>
 
 namespace msml::fe {
@@ -73,6 +75,37 @@ void add_fixed(const Tensor<Lanes>& Q, const Gradients& H, bool small_strain, Re
     }
 }
 
+using Six = Eigen::Matrix<double, 6, 1>;
+
+/// A symmetric tensor with its scalar product: off-diagonal entries times sqrt(2).
+Six vector_of(const Mat3& S) {
+  const double root = std::sqrt(0.5);
+  Six v;
+  for (int k = 0; k < 6; ++k) v[k] = (k < 3 ? 0.5 : root) * (S(row_of[k], column_of[k]) + S(column_of[k], row_of[k]));
+  return v;
+}
+
+/// dS/dE of a lane: dE = sym(F^T dF) makes dP = A : dF and dS = F^-1 (dP - dF S).
+Eigen::Matrix<double, 6, 6> stiffness(const Gradients& H, const Response& response, int lane, bool small_strain) {
+  Mat3 F = Mat3::Identity(), P;
+  for (int k = 0; k < 9; ++k) {
+    if (!small_strain) F(k / 3, k % 3) += H.c[k][lane];
+    P(k / 3, k % 3) = response.P.c[k][lane];
+  }
+  const Mat3 inverse = F.inverse(), S = small_strain ? Mat3(Mat3::Zero()) : Mat3(inverse * P);
+  Eigen::Matrix<double, 6, 6> C;
+  for (int m = 0; m < 6; ++m) {
+    Mat3 dE = Mat3::Zero(), dP = Mat3::Zero();
+    dE(row_of[m], column_of[m]) = dE(column_of[m], row_of[m]) = m < 3 ? 1 : std::sqrt(0.5);
+    const Mat3 dF = inverse.transpose() * dE;
+    for (int I = 0; I < 9; ++I)
+      for (int J = 0; J < 9; ++J)
+        dP(I / 3, I % 3) += response.tangent[I >= J ? packed(I, J) : packed(J, I)][lane] * dF(J / 3, J % 3);
+    C.col(m) = vector_of(inverse * (dP - dF * S));
+  }
+  return 0.5 * (C + C.transpose());
+}
+
 }  // namespace
 
 PronyHistory::PronyHistory(const Prony& prony, int points, bool small_strain)
@@ -86,6 +119,7 @@ PronyHistory::PronyHistory(const Prony& prony, int points, bool small_strain)
   elastic_.resize(count);
   fixed_.resize(count);
   stress_.resize(count);
+  energy_.resize(count);
   parts_.assign(prony.g.size(), std::vector<SymmetricLanes>(count));
   begin_step(0);
 }
@@ -121,7 +155,7 @@ void PronyHistory::apply(Want want, std::span<const Gradients> gradients, std::s
   }
 }
 
-void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<const Response> responses) {
+void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<const Response> responses, bool stored) {
   double rest = 1;
   for (const double g : prony_.g) rest -= g;
   for (std::size_t q = 0; q < responses.size(); ++q) {
@@ -136,12 +170,33 @@ void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<cons
       }
       elastic_[q].c[k] = now.c[k];
     }
+    if (stored) store(q, gradients[q], responses[q]);
+  }
+}
+
+void PronyHistory::store(std::size_t point, const Gradients& gradient, const Response& response) {
+  double rest = 1;
+  for (const double g : prony_.g) rest -= g;
+  energy_[point] = rest * scale_ * response.energy;
+  for (int lane = 0; lane < lanes; ++lane) {
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> C(scale_ * stiffness(gradient, response, lane, small_strain_));
+    if (C.info() != Eigen::Success) continue;
+    const auto spring = [&](const SymmetricLanes& S) {
+      Mat3 full;
+      for (int k = 0; k < 9; ++k) full(k / 3, k % 3) = S.c[place_of[k]][lane];
+      return 0.5 * C.matrixL().solve(vector_of(full)).squaredNorm();
+    };
+    const double elastic = spring(elastic_[point]), energy = scale_ * response.energy[lane];
+    const double ratio = elastic > 0 && energy > 0 ? energy / elastic : 1;
+    for (std::size_t i = 0; i < prony_.g.size(); ++i)
+      energy_[point][lane] += ratio / prony_.g[i] * spring(parts_[i][point]);
   }
 }
 
 std::size_t PronyHistory::bytes() const {
   const std::size_t points = elastic_.size() + fixed_.size() + stress_.size() + parts_.size() * elastic_.size();
-  return points * sizeof(SymmetricLanes) + (prony_.g.size() + prony_.tau.size() + 2 * decay_.size()) * sizeof(double);
+  return points * sizeof(SymmetricLanes) + energy_.size() * sizeof(Lanes) +
+         (prony_.g.size() + prony_.tau.size() + 2 * decay_.size()) * sizeof(double);
 }
 
 }  // namespace msml::fe

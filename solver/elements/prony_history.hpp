@@ -20,7 +20,10 @@ struct SymmetricLanes {
 /// doi 10.1002/nme.1620020106; Simo 1987, doi 10.1016/0045-7825(87)90107-1):
 /// h_i <- exp(-x) h_i + g_i (1 - exp(-x)) / x (S_e,new - S_e,old), so that S = factor S_e + Q with Q fixed in the step.
 /// A step that jumps at its start is one of dt = 0 (instantaneous) followed by one without change. Small-strain laws
-/// use their own stress P instead of S.
+/// use their own stress P instead of S. Stored is g_inf W and what the terms hold, w(h_i) / g_i with
+/// w(S) = W S . C^-1 S / (S_e . C^-1 S_e), C = dS_e/dE: the energy of the spring of a Maxwell element where S_e is
+/// linear in E (Simo and Hughes 1998, doi 10.1007/b98904, section 10.2), and for every law g_i W after a sudden strain
+/// and its part exp(-2 t / tau_i) as that is held. 0 where C is not positive definite.
 class PronyHistory {
  public:
   PronyHistory() = default;
@@ -32,13 +35,18 @@ class PronyHistory {
   /// Elastic responses become viscoelastic ones: W <- factor W + Q : E, P <- factor P + F Q; the tangent is its
   /// derivative (for definite_tangent with the semidefinite part of Q).
   void apply(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
-  /// Takes over the end of the step; `responses` are the elastic ones.
-  void end_step(std::span<const Gradients> gradients, std::span<const Response> responses);
+  /// Takes over the end of the step; `responses` are the elastic ones. With their tangents (`stored`), finds the stored
+  /// energy.
+  void end_step(std::span<const Gradients> gradients, std::span<const Response> responses, bool stored);
   std::size_t bytes() const;
   /// S at the end of the last step, per point; P for small-strain laws.
   std::span<const SymmetricLanes> stress() const { return stress_; }
+  /// Energy stored per reference volume at the end of the last step that asked for it, per point.
+  std::span<const Lanes> energy() const { return energy_; }
 
  private:
+  void store(std::size_t point, const Gradients& gradient, const Response& response);
+
   Prony prony_;
   bool small_strain_ = false;
   double scale_ = 1;                                ///< of the law to the instantaneous one
@@ -48,6 +56,7 @@ class PronyHistory {
   std::vector<std::vector<SymmetricLanes>> parts_;  ///< h_i at the start of the step: [term][point]
   std::vector<SymmetricLanes> fixed_;               ///< Q, per point
   std::vector<SymmetricLanes> stress_;
+  std::vector<Lanes> energy_;
 };
 
 }  // namespace msml::fe

@@ -15,7 +15,8 @@ template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
       pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes, numbering_.links)),
-      thickness_(dimension < 3 ? model.thickness : 1) {
+      thickness_(dimension < 3 ? model.thickness : 1),
+      stored_energies_(model.stored_energies) {
   const Rule<dimension> places = rule();
   for (std::size_t q = 0; q < count; ++q) reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
   for (const Region& region : model.regions) densities_.push_back(region.density);
@@ -223,21 +224,53 @@ void SimplexElements<dimension, nodes, count>::begin_step(double dt) {
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
-    Batch& batch = batches_[b];
-    if (batch.history.empty()) return;
-    const auto moved = gather_nodes<dimension, nodes>(batch, u);
-    Gradients H[count];
-    Response response[count];
-    for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
-    batch.laws.evaluate(Want::stress, {H, count}, {response, count});
-    batch.history.end_step({H, count}, {response, count});
+    if (!batches_[b].history.empty()) end_step(batches_[b], u);
   });
 }
 
 template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::end_step(Batch& batch, const Vector& u) const {
+  const auto moved = gather_nodes<dimension, nodes>(batch, u);
+  Gradients H[count];
+  Response response[count];
+  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
+  batch.laws.evaluate(stored_energies_ ? Want::tangent : Want::stress, {H, count}, {response, count});
+  batch.history.end_step({H, count}, {response, count}, stored_energies_);
+  if (!stored_energies_) return;
+  batch.history.apply(Want::stress, {H, count}, {response, count});
+  batch.stored_beside = 0;
+  for (std::size_t q = 0; q < count; ++q)
+    for (int lane = 0; lane < batch.count; ++lane)
+      batch.stored_beside +=
+          batch.points[q].weight[lane] * (batch.history.energy()[q][lane] - response[q].energy[lane]);
+}
+
+template <int dimension, int nodes, int count>
+bool SimplexElements<dimension, nodes, count>::remembers() const {
+  return std::any_of(batches_.begin(), batches_.end(), [](const Batch& b) { return !b.history.empty(); });
+}
+
+template <int dimension, int nodes, int count>
+double SimplexElements<dimension, nodes, count>::stored_beside() const {
+  double sum = 0;
+  for (const Batch& batch : batches_) sum += batch.stored_beside;
+  return sum;
+}
+
+template <int dimension, int nodes, int count>
+std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_energy() const {
+  if (!stored_energies_ || !remembers()) return nullptr;
+  auto values = std::make_shared<std::vector<double>>(numbering_.elements.size() * count, 0.0);
+  for (const Batch& batch : batches_)
+    for (std::size_t q = 0; q < batch.history.energy().size(); ++q)
+      for (int lane = 0; lane < batch.count; ++lane)
+        (*values)[static_cast<std::size_t>(batch.first + lane) * count + q] = batch.history.energy()[q][lane];
+  return values;
+}
+
+template <int dimension, int nodes, int count>
 std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_stress() const {
-  const bool any = std::any_of(batches_.begin(), batches_.end(), [](const Batch& b) { return !b.history.empty(); });
-  if (!any) return nullptr;
+  if (!remembers()) return nullptr;
   auto values = std::make_shared<std::vector<double>>(numbering_.elements.size() * count * 6, 0.0);
   for (const Batch& batch : batches_)
     for (std::size_t q = 0; q < batch.history.stress().size(); ++q)

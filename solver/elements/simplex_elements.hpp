@@ -25,7 +25,8 @@ struct SimplexBatch {
   Point points[rule_points];
   const Lanes* inverse(int q) const { return points[straight ? 0 : q].inverse; }
   BatchLaws laws;
-  PronyHistory history;  ///< empty where elastic
+  PronyHistory history;      ///< empty where elastic
+  double stored_beside = 0;  ///< see Elements::stored_beside
 };
 
 /// Lines lie along x (uniaxial strain: F = diag(F_11, 1, 1)), triangles in a plane of constant z. The gradient has
@@ -41,6 +42,8 @@ class SimplexElements final : public Elements {
   void end_step(const Vector& u) override;
   std::shared_ptr<const std::vector<double>> history_stress() const override;
   std::size_t bytes() const override;
+  std::shared_ptr<const std::vector<double>> history_energy() const override;
+  double stored_beside() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
@@ -54,6 +57,8 @@ class SimplexElements final : public Elements {
  private:
   const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   static Rule<dimension> rule();
+  void end_step(Batch& batch, const Vector& u) const;
+  bool remembers() const;
   void make_batches(const Model& model);
   void fill(Batch& batch, const Model& model) const;
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
@@ -63,6 +68,7 @@ class SimplexElements final : public Elements {
   PatternPtr pattern_;
   std::vector<double> densities_;
   double thickness_ = 1;
+  bool stored_energies_ = true;
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;

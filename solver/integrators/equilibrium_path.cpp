@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibrium along a path of loads, in pieces that halve where Newton's method fails.
 #include <algorithm>
+#include <limits>
 
 #include "solver/integrators/stepper.hpp"
 
@@ -30,8 +31,16 @@ void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) 
   run.newton.prepare(run.now.u, path.loads(share));
   run.newton.rest();
   run.set_reactions(run.newton.forces().residual(), path.supports);
-  run.account(before);
   run.equations.end_step(run.now.u);
+  run.account(before);
+}
+
+/// Adaptive pieces are no longer than half the shortest relaxation time, as a share of the path.
+double longest_piece(const Run& run, const EquilibriumPath& path, double whole, double smallest) {
+  double tau = std::numeric_limits<double>::infinity();
+  for (const Region& region : run.model.regions)
+    for (const double t : region.prony.tau) tau = std::min(tau, t);
+  return std::clamp(0.5 * tau / path.duration, smallest, whole);
 }
 
 /// Few iterations: longer pieces; many: shorter ones.
@@ -57,7 +66,8 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   const bool adaptive = run.model.settings.adaptive_step;
   const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
   const double smallest = (to - from) / (adaptive ? 4096 : 64);
-  double piece = to - from;
+  const double longest = adaptive ? longest_piece(run, path, to - from, smallest) : to - from;
+  double piece = longest;
   if (adaptive && run.piece > 0) piece = std::clamp(run.piece / path.duration, smallest, piece);
   while (from < to) {
     const double stop = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
@@ -67,7 +77,7 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
     if (result.stop == Stop::converged) {
       take(run, path, share, result.u);
       from = share;
-      piece *= growth(result, adaptive);
+      piece = std::min(longest, piece * growth(result, adaptive));
       if (adaptive) run.piece = piece * path.duration;
       continue;
     }

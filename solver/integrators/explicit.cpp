@@ -124,8 +124,8 @@ struct Explicit {
     if (!sound(step, before, supports, loads)) return false;
     ++now.increment;
     run.set_reactions(run.newton.forces().residual(), supports);
-    run.account(before.u);
     run.equations.end_step(now.u);
+    run.account(before.u);
     return true;
   }
 
@@ -157,6 +157,7 @@ void run_explicit(Run& run) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+    if (s == 0) run.hold_start(supports);
     ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();

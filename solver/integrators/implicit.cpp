@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "solver/integrators/stepper.hpp"
 
@@ -31,8 +33,11 @@ struct Stage {
   const Step& step;
   const Supports& supports;
   double start;
-  BlockMatrix& C;   ///< damping beside alpha M, at the start of the time step
-  double size = 0;  ///< largest displacement so far, root of the sum of squares
+  BlockMatrix& C;                         ///< damping beside alpha M, at the start of the time step
+  double size = 0;                        ///< largest displacement so far, root of the sum of squares
+  std::optional<BlockMatrix> C_end = {};  ///< the same at the end of the time step, see turns()
+  bool C_end_current = false;             ///< it belongs to the end of the step that was tried last
+  bool C_current = false;                 ///< C belongs to the present displacement
 };
 
 struct Trial {
@@ -53,6 +58,43 @@ void follow(const Supports& supports, double time, Kinematics& motion) {
   supports.drive(time, shift, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
 }
 
+constexpr double tolerable_turn = 1e-3;  // of the damping force beside all others, by which turning may change it
+
+/// True if the stiffness that damps has turned with the body, so that a rigid motion would be braked: K x_dot = 0 holds
+/// where the body is, and the velocity is that of the end of the step. C_end then is the damping there. With one linear
+/// solve per step the rotation is that of the start, as its K.
+bool turns(Stage& stage, const Trial& trial) {
+  Run& run = stage.run;
+  const Settings& settings = run.model.settings;
+  stage.C_end_current = false;
+  if (settings.damping_stiffness == 0 || settings.newton_iterations == 1 || run.equations.small_strain()) return false;
+  if (!stage.C_end) stage.C_end.emplace(stage.C.pattern);
+  run.newton.damping(trial.result.u, trial.increment.loads, *stage.C_end);
+  stage.C_end_current = true;
+  Vector at_start, at_end;
+  const Vector velocity = trial.increment.motion.velocity_at(trial.result.u);
+  multiply(stage.C, velocity, at_start);
+  multiply(*stage.C_end, velocity, at_end);
+  return free_norm(at_end - at_start, stage.supports.fixed) > tolerable_turn * trial.result.scale;
+}
+
+/// Newton's way to the end of the step, again from there where the damping turned.
+IncrementResult reach(Stage& stage, Trial& trial) {
+  Run& run = stage.run;
+  IncrementResult first = run.reach(trial.increment);
+  trial.result = first;
+  if (first.stop != Stop::converged || !trial.increment.damping_matrix || !turns(stage, trial)) return first;
+  trial.increment.start = first.u;
+  trial.increment.damping_matrix = &*stage.C_end;
+  run.newton.forget();
+  IncrementResult second = run.reach(trial.increment);
+  stage.C_end_current = false;
+  if (second.stop == Stop::converged) return second;
+  trial.increment.damping_matrix = &stage.C;
+  run.newton.forget();
+  return first;
+}
+
 /// The step from the present state to a time; nothing is kept.
 Trial try_step(Stage& stage, double time, const Forces& start_forces, bool damped) {
   Run& run = stage.run;
@@ -70,7 +112,7 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
   trial.increment.offset = carried(trial.increment.motion, start_forces);
   run.equations.begin_step(h);
   if (run.equations.has_history()) run.newton.forget();
-  trial.result = run.reach(trial.increment);
+  trial.result = reach(stage, trial);
   if (trial.result.stop != Stop::converged) return trial;
   trial.velocity = trial.increment.motion.velocity_at(trial.result.u);
   trial.acceleration = trial.increment.motion.acceleration_at(trial.result.u);
@@ -96,9 +138,12 @@ void keep(Stage& stage, const Trial& trial, double time, const Forces& start_for
   run.now.time = time;
   run.set_reactions(run.newton.residual(trial.increment), stage.supports);
   if (blends(trial.increment.motion)) run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
-  run.account(before);
   run.equations.end_step(run.now.u);
+  run.account(before);
+  if (stage.C_end_current) std::swap(stage.C.values, stage.C_end->values);
+  stage.C_current = std::exchange(stage.C_end_current, false);
   stage.size = std::max(stage.size, run.now.u.norm());
+  ++run.pieces;
 }
 
 /// Local error of a step of h beside what may be, 1 at the limit: the term of the displacement's expansion that the
@@ -144,7 +189,7 @@ bool advance(Stage& stage, double target) {
     const Forces start_forces =
         blends(kinematics(settings, run.now, stage.supports.fixed, taken)) ? run.newton.forces() : Forces{};
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, time}};
-    const bool damped = run.newton.damping(run.now.u, loads, stage.C);
+    const bool damped = std::exchange(stage.C_current, false) || run.newton.damping(run.now.u, loads, stage.C);
     Trial trial = try_step(stage, time, start_forces, damped);
     const bool solved = trial.result.stop == Stop::converged;
     const double order = settings.integrator == Integrator::implicit_euler ? 2 : 3;
@@ -181,6 +226,7 @@ void run_implicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
+    if (s == 0) run.hold_start(supports);
     if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);

@@ -24,16 +24,37 @@ State Run::state() const {
           equations.elements().history_stress(),
           to_pressures(numbering, now.u),
           now.load_factor,
+          to_corner_pressures(numbering, now.u),
+          equations.elements().history_energy(),
           equations.shared_elements()};
 }
 
 void Run::hold(const Step& step, const Mask& fixed) {
   free = free_motions(model, step, equations.numbering(), fixed);
   newton.free_rigid_motions(!free.modes.empty());
-  if (!free.modes.empty())
-    outcome.notes.push_back(fmt::format(
-        "step '{}': {} rigid motions are free; its loads balance, and the state is one of many that differ by them",
-        step.name, free.modes.size()));
+  if (free.modes.empty()) return;
+  const std::string what =
+      equations.numbering().scalar
+          ? "nothing gives the level of the value; its fluxes and sources balance, and the state is "
+            "one of many that differ by a constant"
+          : fmt::format(
+                "{} rigid motions are free; its loads balance, and the state is one of many "
+                "that differ by them",
+                free.modes.size());
+  outcome.notes.push_back(fmt::format("step '{}': {}", step.name, what));
+}
+
+void Run::hold_start(const Supports& supports) {
+  const Vector given = now.v;
+  for (std::size_t k = 0; k < supports.fixed.size(); ++k)
+    if (supports.fixed[k] && supports.moved_by[k] < 0) now.v[static_cast<Eigen::Index>(k)] = 0;
+  supports.slides.project(now.v);
+  long nodes = 0;
+  for (Eigen::Index k = 0; k < given.size(); k += 3)
+    nodes += (given - now.v).segment<3>(k).norm() > 1e-12 * given.segment<3>(k).norm();
+  if (nodes > 0)
+    outcome.notes.push_back(
+        fmt::format("the initial velocity is left out where supports hold the body: at {} nodes", nodes));
 }
 
 void Run::refuse_pushed_bodies() {
@@ -116,6 +137,7 @@ void Run::mark() {
   const Forces& forces = newton.forces();
   pull_before = forces.external + now.reaction;
   damping_before = forces.damping;
+  if (equations.has_history()) internal_before = forces.internal;
   tangled = forces.found.smallest_J < 0.1;
   measure_energies();
   const Energies& e = now.energies;
@@ -132,12 +154,15 @@ void Run::account(const Vector& u_before) {
   const Vector moved = now.u - u_before;
   now.energies.external_work += 0.5 * dot(moved, pull_before + forces.external + now.reaction);
   now.energies.dissipated += 0.5 * dot(moved, damping_before + forces.damping);
+  if (!equations.has_history()) return mark();
+  const double work = 0.5 * dot(moved, internal_before + forces.internal), stored = now.energies.elastic;
   mark();
+  now.energies.dissipated += work - (now.energies.elastic - stored);
 }
 
 void Run::measure_energies() {
   Energies& energies = now.energies;
-  energies.elastic = newton.forces().found.energy;
+  energies.elastic = newton.forces().found.energy + equations.elements().stored_beside();
   Vector p;
   multiply(equations.mass(), now.v, p);
   energies.kinetic = 0.5 * dot(now.v, p);

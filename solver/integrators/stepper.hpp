@@ -28,7 +28,9 @@ struct Run {
   Motion now;
   std::vector<double> residuals = {};            ///< of the increment that failed
   Vector pull_before = {}, damping_before = {};  ///< external and support forces, damping forces at the last mark
+  Vector internal_before = {};                   ///< internal forces at the last mark, where there is a history
   double piece = 0;                              ///< adaptive_step: length of the next piece, in time; 0: not known yet
+  int pieces = 0;                                ///< implicit dynamics: time steps taken
   FreeMotions free = {};                         ///< rigid motions that the supports of the present step leave
   std::optional<Forces> between = {};            ///< balanced forces, where these are not those at the present time
   std::optional<double> energy_at_start = {};    ///< elastic and kinetic, at the first mark
@@ -41,6 +43,8 @@ struct Run {
 
   /// Takes up what the supports of a static step leave free, if anything.
   void hold(const Step& step, const Mask& fixed);
+  /// Takes the initial velocity away from what the supports hold, and notes that.
+  void hold_start(const Supports& supports);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
   /// False where the forces of the state that a run begins with are not finite; the outcome is explained then.
@@ -58,7 +62,7 @@ struct Run {
   /// Reactions that balance a residual.
   void set_reactions(const Vector& residual, const Supports& supports);
   /// Work and loss from u_before to the present state by the trapezoidal rule, with the forces at the last mark and
-  /// those that Newton evaluated last. Marks.
+  /// those that Newton evaluated last, after the elements took over the end of the step. Marks.
   void account(const Vector& u_before);
   /// The present forces are those that the next account starts from; energies are measured.
   void mark();

@@ -18,6 +18,7 @@ fe::Model build(const std::string& tag, const Attributes& attributes, const std:
   static const Language language;
   Listener listener;
   Scene scene = cube(language);
+  if (tag == "initialVelocity") scene.solver["timeIntegration"] = std::string("Newmark");
   scene.constraints = {condition(language, tag, attributes, for_step)};
   return build_model(scene.record(language), listener, 1).model;
 }
@@ -110,6 +111,18 @@ TEST(SymmetryPlane, AcrossAnAxisHoldsOneComponent) {
   const fe::Prescribed& held = model.steps[0].prescribed.at(0);
   EXPECT_THAT(held.components, ElementsAre(false, true, false));
   EXPECT_THAT(held.nodes, ElementsAre(3, 5));
+}
+
+TEST(Tables, ScaleGravityToo) {
+  const Language language;
+  Listener listener;
+  Scene scene = cube(language);
+  scene.steps = {language.tag(
+      "step", "step", {{"gravity", std::vector<double>{0, 0, -10}}, {"table", std::vector<double>{0, 0, 2, 1}}})};
+  const fe::Step step = build_model(scene.record(language), listener, 1).model.steps[0];
+  EXPECT_FALSE(step.gravity_steady);
+  EXPECT_EQ(step.gravity_function(Vec3(1, 2, 3), 1), Vec3(0, 0, -5));
+  EXPECT_EQ(step.gravity_function(Vec3(1, 2, 3), 9), Vec3(0, 0, -10));
 }
 
 TEST(SymmetryPlane, ObliqueIsASlide) {

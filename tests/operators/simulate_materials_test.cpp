@@ -142,5 +142,23 @@ TEST(Materials, RefuseIncompressibleLawsOutsideMixedElements) {
   }
 }
 
+TEST(Prony, SaysHowTimePassesInStaticsAndWarnsOfLongSteps) {
+  const Language language;
+  Scene scene = bar(language, "linearElasticMaterial", {{"youngModulus", 1.0}, {"poissonRatio", 0.25}});
+  scene.regions[0].children.push_back(
+      language.tag("prony", "prony", {{"g", std::vector<double>{0.3}}, {"tau", std::vector<double>{0.2}}}));
+  scene.steps = {
+      language.tag("step", "step", {{"dt", 0.1}, {"iterations", Integer{10}}, {"gravity", Numbers{0, 0, 0}}})};
+  Listener one, ten;
+  build_model(scene.record(language), one, 1);
+  ASSERT_EQ(one.warnings.size(), 1u);
+  EXPECT_THAT(one.warnings[0], HasSubstr("its time steps of 1 are longer than the shortest tau of prony, 0.2"));
+  scene.solver["loadSteps"] = Integer{10};
+  build_model(scene.record(language), ten, 1);
+  EXPECT_TRUE(ten.warnings.empty());
+  EXPECT_THAT(ten.notes, testing::Contains("step 'step1': prony relaxes over dt * iterations = 1, in which the loads "
+                                           "grow in 10 parts of 0.1"));
+}
+
 }  // namespace
 }  // namespace msml::test

@@ -237,6 +237,47 @@ TEST(MixedElements, KeepTheEnergyOfAVibration) {
   EXPECT_LT(drift, 1e-8 * largest);  // the tolerance of 40 steps, amplified by the stiffness of the volume
 }
 
+// Both halves are strained alike, so that the pressures are -k e with k = E/(3 (1 - 2 nu)) of each, and the stresses
+// along and across sigma = lambda e + 2 mu e and lambda e: closed forms of linear elasticity.
+TEST(MixedElements, HaveAPressureOfTheirOwnInEachRegion) {
+  Model model = make_model(box_mesh(4, 1, 1, {2, 0.5, 0.5}, CellKind::tet10), {});
+  model.formulation = Formulation::mixed;
+  model.settings.integrator = Integrator::static_;
+  const double e = 0.01, nu = 0.49, young[2] = {1000, 500};
+  Region whole = model.regions[0];
+  model.regions.clear();
+  for (int half = 0; half < 2; ++half) {
+    Region region{.name = "half", .law = make_linear_elastic({young[half], nu, Strain::small}), .elements = {}};
+    for (const int element : whole.elements) {
+      double x = 0;
+      for (int a = 0; a < 4; ++a) x += model.mesh->points(model.mesh->cell(element)[a], 0) / 4;
+      if ((x > 1) == (half == 1)) region.elements.push_back(element);
+    }
+    model.regions.push_back(region);
+  }
+  Prescribed held{.name = "all", .nodes = points_where(*model.mesh, [](const Vec3&) { return true; })};
+  for (const int n : held.nodes) held.values.push_back(Vec3(e * model.mesh->points(n, 0), 0, 0));
+  model.steps[0].prescribed = {held};
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  const ElementResults results = element_results(model, outcome.state);
+  for (int half = 0; half < 2; ++half) {
+    const double mu = young[half] / (2 * (1 + nu)), lambda = young[half] * nu / ((1 + nu) * (1 - 2 * nu));
+    for (const int element : model.regions[static_cast<std::size_t>(half)].elements) {
+      const double* stress = results.cauchy.data() + 6 * element;
+      EXPECT_NEAR(stress[0], (lambda + 2 * mu) * e, 1e-9 * lambda * e);
+      EXPECT_NEAR(stress[1], lambda * e, 1e-9 * lambda * e);
+    }
+  }
+  const auto pressure = [&](double x) {
+    return outcome.state.pressure[static_cast<std::size_t>(nearest_point(*model.mesh, {x, 0, 0}))];
+  };
+  const double k[2] = {young[0] / (3 * (1 - 2 * nu)), young[1] / (3 * (1 - 2 * nu))};
+  EXPECT_NEAR(pressure(0.5), pressure(0), 1e-9 * k[0] * e);
+  EXPECT_NEAR(pressure(0.5) / pressure(1.5), 2, 1e-9);
+  EXPECT_NEAR(pressure(1), 0.5 * (pressure(0.5) + pressure(1.5)), 1e-9 * k[0] * e);
+}
+
 void expect_refused(const Model& model, const std::string& part) {
   try {
     model.check();

@@ -88,5 +88,21 @@ TEST(Slides, ASupportThatMovesOutOfThePlaneIsRefused) {
   }
 }
 
+TEST(Slides, SupportsMayMoveANodeAlongItsPlane) {
+  Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {.poisson_ratio = 0.3});
+  model.settings.integrator = Integrator::static_;
+  const auto end = points_where(*model.mesh, [](const Vec3& x) { return x[0] > 1 - 1e-9; });
+  Step& step = model.steps[0];
+  step.prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; })),
+                     {.name = "move", .nodes = end, .values = {Vec3(0.1, -0.1, 0)}, .components = {true, true, false}}};
+  step.slides = {{.name = "plane", .nodes = end, .normal = Vec3(1, 1, 0)}};
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  for (const int node : end) {
+    EXPECT_DOUBLE_EQ(outcome.state.displacement(node, 0), 0.1);
+    EXPECT_DOUBLE_EQ(outcome.state.displacement(node, 1), -0.1);
+  }
+}
+
 }  // namespace
 }  // namespace msml::fe

@@ -90,14 +90,15 @@ const std::string& name_of(const Record& record, Key<Formulas> key) {
 
 }  // namespace
 
-Key<std::vector<double>> add_table(Description& description) {
+Key<std::vector<double>> add_table(Description& description, const std::string& of) {
   return description.parameter<std::vector<double>>(
       "table",
       {.optional = true,
        .multiple_of = 2,
        .check = table_problem,
-       .doc = "a factor in time on the numbers of this tag: \"t0 v0 t1 v1 …\", linear between the times, constant "
-              "before the first and after the last; nothing ramps then"});
+       .doc = "a factor in time on " + of +
+              ": \"t0 v0 t1 v1 …\", linear between the times, constant before the first and after the last; nothing "
+              "ramps then"});
 }
 
 fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table) {

@@ -2,6 +2,7 @@
 // Constraints and loads: what a tag of category "constraint" builds, and what their descriptions share.
 #pragma once
 #include <functional>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -53,9 +54,20 @@ ConditionFactory supporting_mesh();
 /// All of the above.
 std::vector<ConditionFactory> conditions();
 
-/// Throws Error at the condition's place where it is of displacements, but the body's unknown is scalar, or the other
-/// way round.
-void check_unknown(const Record& condition, bool scalar);
+/// What a condition stands beside, as far as it is known.
+struct Surroundings {
+  CellKind kind = CellKind::vertex;  ///< of the elements; vertex: particles
+  std::optional<bool> scalar = {};   ///< the unknown is no displacement
+  bool thinning = false;             ///< see changes_thickness()
+  const fe::Settings* settings = nullptr;
+};
+/// Throws Error at the condition's place where it has no meaning there: it is of displacements, but the unknown is
+/// scalar, or the other way round; it points out of the plane or the line of the body; its pressure would have to know
+/// how the thickness changes; it ties a node to itself; it gives a velocity to what has no inertia.
+void check_condition(const Record& condition, const Surroundings& around);
+
+/// True if the body is in plane stress and a law is of finite strains, so that its thickness changes.
+bool changes_thickness(const fe::Model& model);
 
 /// Attributes that every condition has.
 struct CommonKeys {
@@ -65,8 +77,8 @@ struct CommonKeys {
 /// Adds `indices` (meaning nodes where the scene lists plain numbers, unless `indexes` says otherwise) and `forStep`.
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes = Indexed::nodes);
 
-/// Adds `table`, a factor in time on the numbers of the tag.
-Key<std::vector<double>> add_table(Description& description);
+/// Adds `table`, a factor in time on the numbers of the tag, or on what `of` says.
+Key<std::vector<double>> add_table(Description& description, const std::string& of = "the numbers of this tag");
 /// The table as a function: linear between its times, constant outside; empty where the tag has none.
 fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table);
 

@@ -13,17 +13,6 @@ fe::VectorFunction first_component(const Function& value) {
 
 }  // namespace
 
-void check_unknown(const Record& condition, bool scalar) {
-  const std::string& tag = condition.tag();
-  const bool of_scalar = tag == "fixedValue" || tag == "flux" || tag == "source";
-  if (of_scalar && !scalar)
-    refuse(condition, "is for scalar problems, whose regions have diffusionMaterial; this body has displacements");
-  if (!of_scalar && scalar)
-    refuse(condition,
-           "is for displacements, but the regions have diffusionMaterial, whose unknown is a number; scalar problems "
-           "take fixedValue, flux and source");
-}
-
 ConditionFactory fixed_value() {
   ConditionFactory tag("fixedValue", "constraint", "Nodes of a scalar problem with a given value.");
   add_common(tag, "the nodes; or faces or elements, whose nodes are meant");

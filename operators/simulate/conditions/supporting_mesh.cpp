@@ -63,7 +63,6 @@ ConditionFactory supporting_mesh() {
       "mesh.");
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter& reporter) -> Condition {
-      if (dimension(body.kind) != 3) refuse(record, "needs a main mesh of tetrahedra");
       const Body inner = inner_body(record, record.share(mesh));
       const fe::LinearElastic data{.youngs_modulus = record[young],
                                    .poisson_ratio = record[poisson],

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene says although it means nothing there.
+#pragma once
+#include "msml/core/operator.hpp"
+#include "solver/model.hpp"
+
+namespace msml::simulation {
+
+/// Warns of each attribute in the record of a simulation and below it that has no meaning beside the others: loadSteps
+/// in dynamics, spectralRadius with Newmark. Attributes at their default say nothing and are passed over.
+void warn_of_idle(const Record& args, const fe::Settings& settings, bool scalar, Reporter& reporter);
+
+/// True for names in capitals such as SGAUSS_SEIDEL and ILU2, as other programs spell theirs.
+bool of_other_program(const std::string& name);
+
+}  // namespace msml::simulation
