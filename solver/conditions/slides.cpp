@@ -18,7 +18,7 @@ using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
 Block block(BlockMatrix& A, int position) { return Block(A.values.data() + 9 * static_cast<std::size_t>(position)); }
 
 /// The part of a normal that supports do not hold already.
-Vec3 free_part(const Slide& slide, int point, int node, const Held& held) {
+Vec3 free_part(const Slide& slide, int point, int node, const HeldUnknowns& held) {
   Vec3 n = slide.normal.normalized();
   double first = 0, last = 0, size = 0;  // along the normal, at the start of the step and at its end
   int moved = -1;
@@ -77,7 +77,7 @@ void Slides::project(BlockMatrix& A) const {
   }
 }
 
-Slides make_slides(const Step& step, const Numbering& numbering, const Held& supports) {
+Slides make_slides(const Step& step, const Numbering& numbering, const HeldUnknowns& supports) {
   std::map<int, Mat3> held;  // sum of n n^T over orthonormal normals
   for (const Slide& slide : step.slides)
     for (const int point : slide.nodes) {

@@ -24,7 +24,7 @@ struct Slides {
 };
 
 /// What supports do with the unknowns of a step.
-struct Held {
+struct HeldUnknowns {
   const Mask& fixed;
   const Mask& moves;           ///< 0: to zero; 1: to other values; 2: as a function of time
   const Vector &first, &last;  ///< values at the start of the step and at its end
@@ -33,6 +33,6 @@ struct Held {
 /// The slides of a step. Normals of one node are made orthogonal, so that two planes leave a line and three hold it;
 /// components that supports hold anyway are left to them. Throws Error where a support moves a node out of its plane,
 /// or may do so: it follows a function of time, or leaves a part of the normal free.
-Slides make_slides(const Step& step, const Numbering& numbering, const Held& supports);
+Slides make_slides(const Step& step, const Numbering& numbering, const HeldUnknowns& supports);
 
 }  // namespace msml::fe

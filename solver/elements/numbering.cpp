@@ -152,7 +152,7 @@ std::vector<std::array<int, 2>> edge_ends(const Numbering& numbering) {
 
 std::size_t Numbering::bytes() const {
   const std::size_t integers = elements.size() + region_of.size() + node_of.size() + number_of.size() +
-                               element_nodes.size() + 2 * links.size() + pressure_of.size();
+                               element_nodes.size() + 2 * links.size() + pressure_of.size() + pressure_nodes.size();
   return integers * sizeof(int);
 }
 
