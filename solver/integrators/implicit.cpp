@@ -33,7 +33,7 @@ struct Stage {
   const Step& step;
   const Supports& supports;
   double start;
-  BlockMatrix& C;                         ///< damping beside alpha M, at the start of the time step
+  BlockMatrix& C;                         ///< damping beside alpha M that the time step is taken with
   double size = 0;                        ///< largest displacement so far, root of the sum of squares
   std::optional<BlockMatrix> C_end = {};  ///< the same at the end of the time step, see turns()
   bool C_end_current = false;             ///< it belongs to the end of the step that was tried last
@@ -78,21 +78,27 @@ bool turns(Stage& stage, const Trial& trial) {
   return free_norm(at_end - at_start, stage.supports.fixed) > tolerable_turn * trial.result.scale;
 }
 
-/// Newton's way to the end of the step, again from there where the damping turned.
+constexpr int most_turns = 4;  // the stress of what is left of the braking brakes once more, a thousandth as much
+
+/// Newton's way to the end of the step, again from there while the damping turned.
 IncrementResult reach(Stage& stage, Trial& trial) {
   Run& run = stage.run;
-  IncrementResult first = run.reach(trial.increment);
-  trial.result = first;
-  if (first.stop != Stop::converged || !trial.increment.damping_matrix || !turns(stage, trial)) return first;
-  trial.increment.start = first.u;
-  trial.increment.damping_matrix = &*stage.C_end;
-  run.newton.forget();
-  IncrementResult second = run.reach(trial.increment);
-  stage.C_end_current = false;
-  if (second.stop == Stop::converged) return second;
-  trial.increment.damping_matrix = &stage.C;
-  run.newton.forget();
-  return first;
+  trial.result = run.reach(trial.increment);
+  if (trial.result.stop != Stop::converged || !trial.increment.damping_matrix) return trial.result;
+  for (int turn = 0; turn < most_turns && turns(stage, trial); ++turn) {
+    trial.increment.start = trial.result.u;
+    std::swap(stage.C.values, stage.C_end->values);
+    stage.C_end_current = false;
+    run.newton.forget();
+    IncrementResult next = run.reach(trial.increment);
+    if (next.stop != Stop::converged) {
+      std::swap(stage.C.values, stage.C_end->values);
+      run.newton.forget();
+      break;
+    }
+    trial.result = std::move(next);
+  }
+  return trial.result;
 }
 
 /// The step from the present state to a time; nothing is kept.

@@ -9,6 +9,7 @@
 #include "msml/core/error.hpp"
 #include "solver/check_answer.hpp"
 #include "solver/equations.hpp"
+#include "tests/solver/law_by_name.hpp"
 #include "tests/solver/oscillator.hpp"
 
 namespace msml::fe {
@@ -132,15 +133,19 @@ TEST(RayleighDamping, LeavesARigidRotationAlone) {
   for (int n = 0; n < model.mesh->point_count(); ++n)
     model.initial_velocity.row(n) << 0.5 - model.mesh->points(n, 1), model.mesh->points(n, 0) - 0.5, 0;
   model.settings.damping_stiffness = 1e-3;
-  for (const Integrator integrator : {Integrator::newmark, Integrator::generalized_alpha}) {
+  for (const auto& [integrator, law] : {std::pair{Integrator::newmark, model.regions[0].law},
+                                        {Integrator::generalized_alpha, model.regions[0].law},
+                                        {Integrator::newmark, neo_hookean("log", 1e5, 0.3)}}) {
     model.settings.integrator = integrator;
+    model.regions[0].law = law;
     double first = 0;
     const Outcome outcome = solve(model, [&](const State& state) {
       if (state.increment == 0) first = state.energies.kinetic;
       return true;
     });
     ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
-    EXPECT_NEAR(outcome.state.energies.kinetic / first, 1, 1e-3);  // the spring back of the bulging at the start
+    // A force of 1e-3 of the centrifugal ones (tolerable_turn) over a path of 2 rad takes 4e-3 of the energy.
+    EXPECT_NEAR(outcome.state.energies.kinetic / first, 1, 1e-2) << law->name();
   }
 }
 
