@@ -70,7 +70,9 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
   double piece = longest;
   if (adaptive && run.piece > 0) piece = std::clamp(run.piece / path.duration, smallest, piece);
   while (from < to) {
-    const double stop = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
+    const double kink = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
+    const double stop =
+        kink < to - 1e-12 ? kink : to;  // round-off between shares and times would leave a rest for ever
     const double share = from + piece > stop - 1e-12 ? stop : from + piece;
     const bool last_resort = piece / 2 < smallest;
     IncrementResult result = try_piece(run, path, from, share, last_resort);
