@@ -174,7 +174,7 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
   if (increment.motion.dynamic() || equations_.small_strain() || model_.settings.newton_iterations == 1 || rigid_free_)
     return Stop::converged;
   const bool far = result.residuals.size() <= 2 || definite_taken_;
-  if (far && want_ == Want::tangent && !indefinite_) {
+  if ((far || indefinite_) && want_ == Want::tangent) {
     // The last factorisation of the exact tangent may be of a state far from this one.
     evaluate(increment, result.u, want_, true);
     const Stopwatch watch(seconds_linear_);

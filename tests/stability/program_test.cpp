@@ -74,7 +74,7 @@ const Row rows[] = {
      R"(timeIntegration="centralDifference" allowUnstable="true")", R"(dt="0.1" iterations="1000" gravity="0 0 0")", 3,
      "stopped"},
     {"forward Euler", elastic, pull, R"(timeIntegration="forwardEuler")",
-     R"(dt="0.0001" iterations="10" gravity="0 0 0")", 3, "2 zeta/omega"},
+     R"(dt="0.0001" iterations="10" gravity="0 0 0")", 2, "is unstable at any dt without damping"},
     {"implicit Euler in long steps", elastic, pull, R"(timeIntegration="dynamicImplicitEuler")",
      R"(dt="0.1" iterations="10" gravity="0 0 0")", 0, "damps the lowest period"},
     {"gradients near one half", R"(<linearElasticMaterial youngModulus="1000" poissonRatio="0.4999" strain="small"/>)",
