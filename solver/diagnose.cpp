@@ -39,7 +39,8 @@ std::string advice(const Run& run, const IncrementResult& result) {
                "Try " +
                smaller + ", arcLength=\"true\", a dynamic timeIntegration, or another law";
       if (run.equations.numbering().scalar) return "a part of the body has no fixedValue: give it one";
-      return "either a part of the body can move freely: fix it, or join parts that touch only at a node or an edge; or "
+      return "either a part of the body can move freely: fix it, or join parts that touch only at a node or an edge; "
+             "or "
              "its stiffnesses lie too far apart to be told from nothing: flat elements, a poissonRatio too near 0.5";
     case Stop::out_of_memory:
       return "try linearSolver=\"CG\" or a coarser mesh";
