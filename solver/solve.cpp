@@ -52,6 +52,9 @@ void note_memory(const Run& run, Outcome& outcome) {
   for (const Points* p :
        {&outcome.state.displacement, &outcome.state.velocity, &outcome.state.acceleration, &outcome.state.reaction})
     vectors += static_cast<std::size_t>(p->size()) * sizeof(double);
+  for (int step = 0; step < static_cast<int>(run.model.steps.size()); ++step)
+    vectors += bytes(run.equations.loads(step).dead);
+  for (const Region& region : run.model.regions) vectors += region.elements.size() * sizeof(int);
   outcome.held.push_back({"elements", run.equations.elements().bytes()});
   outcome.held.push_back({"mass", run.equations.mass().values.size() * sizeof(double)});
   outcome.held.push_back({"vectors", vectors});
