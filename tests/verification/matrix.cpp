@@ -19,7 +19,7 @@ Method combined(const Json& law, const Json& element, const Json& integration) {
   Method method;
   method.name = fmt::format("{}, {}, {}", law.at("name").get<std::string>(), element.at("name").get<std::string>(),
                             integration.at("name").get<std::string>());
-  for (const Json* part : {&law, &element, &integration})
+  for (const Json* part : {&element, &law, &integration})
     for (const auto& [from, to] : part->at("replace").items()) method.replace[from] = to.get<std::string>();
   method.measure.node = "body";
   method.measure.pointer = "/check/residual";
