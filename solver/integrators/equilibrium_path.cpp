@@ -55,9 +55,6 @@ double growth(const IncrementResult& result, bool adaptive) {
 EquilibriumPath begin_path(Run& run, int step) {
   const Step& now = run.model.steps[static_cast<std::size_t>(step)];
   run.now.step = step;
-  // Springs come and go with steps: the tangent at hand may be that of others.
-  const auto springs = [&](int s) { return s >= 0 && !run.equations.loads(s).springs.empty(); };
-  if (springs(step) || springs(step - 1)) run.newton.forget();
   return {{}, make_supports(now, run.equations.numbering(), run.now.u), run.now.time, now.dt * now.count};
 }
 

@@ -11,15 +11,24 @@ namespace {
 
 using namespace testing;
 
-/// Two particles at the origin and at (3 4 0), without steps' loads.
-Model pair(double rest, bool to_point) {
+/// Particles of these masses at the rows of `points`, one step without loads.
+Model particles(const Points& points, const std::vector<double>& masses) {
   Model model;
   Mesh mesh;
-  mesh.points.resize(2, 3);
-  mesh.points << 0, 0, 0, 3, 4, 0;
+  mesh.points = points;
   model.mesh = std::make_shared<const Mesh>(mesh);
-  model.point_masses = {{0, 2}, {1, 3}};
+  for (std::size_t n = 0; n < masses.size(); ++n) model.point_masses.push_back({static_cast<int>(n), masses[n]});
   model.steps = {{.name = "s", .dt = 1, .count = 1, .gravity = Vec3::Zero()}};
+  return model;
+}
+
+Points row(double x, double y, double z) { return Vec3(x, y, z).transpose(); }
+
+/// Two particles at the origin and at (3 4 0), without steps' loads.
+Model pair(double rest, bool to_point) {
+  Points points(2, 3);
+  points << 0, 0, 0, 3, 4, 0;
+  Model model = particles(points, {2, 3});
   Spring spring{.name = "spring", .first = 0, .second = 1, .stiffness = 10, .damping = 7, .rest = rest};
   if (to_point) spring.second = -1, spring.point = Vec3(3, 4, 0);
   model.steps[0].springs = {spring};
@@ -100,12 +109,7 @@ constexpr double mass = 2, stiffness = 50, weight = 9.81;
 
 /// A mass below a fixed point, at the rest length of its spring, under gravity, for `count` steps of dt.
 Model pendulum(Integrator integrator, double dt, int count, double damping = 0) {
-  Model model;
-  Mesh mesh;
-  mesh.points.resize(1, 3);
-  mesh.points << 0, 0, -1;
-  model.mesh = std::make_shared<const Mesh>(mesh);
-  model.point_masses = {{0, mass}};
+  Model model = particles(row(0, 0, -1), {mass});
   model.settings.integrator = integrator;
   model.settings.tolerance = 1e-12;
   model.settings.allow_unstable = true;
@@ -206,13 +210,7 @@ TEST(Pendulum, KeepsItsEnergyWhenItSwings) {
 // rests at 6 4/(2 + 6) = 3, a way of 1 from its place at x = 2.
 TEST(Springs, MoveABodyThatNothingElseLoads) {
   for (const Integrator integrator : {Integrator::static_, Integrator::quasi_static}) {
-    Model model;
-    Mesh mesh;
-    mesh.points.resize(1, 3);
-    mesh.points << 2, 0, 0;
-    model.mesh = std::make_shared<const Mesh>(mesh);
-    model.point_masses = {{0, 1}};
-    model.steps = {{.name = "s", .dt = 1, .count = 1, .gravity = Vec3::Zero()}};
+    Model model = particles(row(2, 0, 0), {1});
     model.steps[0].springs = {{.name = "a", .first = 0, .stiffness = 2},
                               {.name = "b", .first = 0, .point = Vec3(4, 0, 0), .stiffness = 6}};
     model.settings.integrator = integrator;
