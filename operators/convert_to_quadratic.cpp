@@ -26,7 +26,8 @@ void project(Mesh& mesh, const Surface& surface, Reporter& reporter) {
 Operator convert_to_quadratic() {
   Operator op("ConvertLinearToQuadraticTetrahedralMesh", "Give every edge of a tetrahedral mesh a mid node.");
   op.source("mid nodes on edges; inversion is excluded by the Bernstein coefficients of the cubic Jacobian");
-  const auto linear = op.input<Mesh>("mesh", "tet4; triangles and lines become quadratic too");
+  const auto linear = op.input<Mesh>(
+      "mesh", "tet4, or a flat mesh of triangles or lines; triangles and lines beside tet4 become quadratic too");
   const auto surface = op.input<Surface>(
       "projectOnto",
       "mid nodes of boundary edges move to its nearest points, except where an element would be inverted", true);
@@ -36,7 +37,8 @@ Operator convert_to_quadratic() {
   op.note("MSML has this conversion in its library, without an operator.");
   op.run([=](Context& c) {
     const Mesh& given = c.get(linear);
-    if (given.count(CellKind::tet4) == 0) require_tets(given, "ConvertLinearToQuadraticTetrahedralMesh");
+    const bool flat = given.count(CellKind::tri3) + given.count(CellKind::line2) > 0 && !c.has(surface);
+    if (given.count(CellKind::tet4) == 0 && !flat) require_tets(given, "ConvertLinearToQuadraticTetrahedralMesh");
     Mesh mesh = to_quadratic(given);
     if (c.has(surface)) project(mesh, c.get(surface), c.reporter());
     c.set(quadratic, std::move(mesh));

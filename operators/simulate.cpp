@@ -77,7 +77,6 @@ void finish(const Simulation& simulation, const fe::Outcome& outcome, const simu
   const std::string settings = simulation::settings_json(simulation);
   const std::string check = simulation::check_json(simulation, outcome, worst, times, warnings);
   reporter.print(simulation::check_text(simulation, outcome, worst, times));
-  for (const std::string& note : outcome.notes) reporter.note(note);
   for (const std::string& warning : warnings) reporter.warn(warning);
   reporter.record("settings", settings);
   reporter.record("check", check);

@@ -76,11 +76,11 @@ void check_split(const Model& model, const Region& region, const std::optional<S
         fmt::format("region '{}': {} has no volumetric part of its own, which formulation=\"{}\" needs; choose "
                     "formulation=\"standard\" or another material",
                     region.name, region.law->name(), formulation));
-  if (!(split->modulus > 0))
+  if (!(split->modulus[0] > 0))
     throw Error(
         fmt::format("region '{}': the volumetric modulus of {} is {:g}, not > 0 as formulation=\"{}\" needs; choose "
                     "formulation=\"standard\" or a poissonRatio > 0",
-                    region.name, region.law->name(), split->modulus, formulation));
+                    region.name, region.law->name(), split->modulus[0], formulation));
 }
 
 const char* unknown_of(const Law& law) { return law.components() == 1 ? "a scalar unknown" : "displacements"; }
@@ -134,14 +134,9 @@ void check_elements(const Model& model, CellKind kind) {
 }
 
 void check_law(const Model& model, const Region& region) {
-  if (region.point_law && model.formulation != Formulation::standard)
-    throw Error(
-        fmt::format("region '{}': a material with expressions in X, Y, Z varies inside elements, which does not go "
-                    "with formulation=\"{}\"; choose formulation=\"standard\", or give numbers or fields",
-                    region.name, spelled(model.formulation)));
   if (!region.law) return;
   const std::optional<Split> split = region.law->split();
-  const bool incompressible = region.law->incompressible() || (split && !std::isfinite(split->modulus));
+  const bool incompressible = region.law->incompressible() || (split && !std::isfinite(split->modulus[0]));
   if (incompressible && model.formulation != Formulation::mixed)
     throw Error(
         fmt::format("region '{}': {} is incompressible, which needs a mesh with formulation=\"mixed\" (quadraticTet); "

@@ -2,6 +2,8 @@
 // Evaluates forces and tangents.
 #include "solver/equations.hpp"
 
+#include <algorithm>
+
 namespace msml::fe {
 
 Vector Kinematics::velocity_at(const Vector& u) const {
@@ -37,7 +39,10 @@ Equations::Equations(const Model& model)
   elements_->add_mass((settings_.lumped_mass && is_dynamic(settings_.integrator)) || is_explicit(settings_.integrator),
                       mass_);
   for (const Region& region : model.regions)
-    if (!region.elements.empty()) small_strain_ = small_strain_ && region.law->small_strain();
+    if (!region.elements.empty()) {
+      small_strain_ = small_strain_ && region.law->small_strain();
+      poisson_ratio_ = std::max(poisson_ratio_, region.law->poisson_ratio());
+    }
   for (const Inlay& inlay : model.inlays) small_strain_ = small_strain_ && inlay.region.law->small_strain();
   for (const Region& region : model.regions) has_history_ = has_history_ || !region.prony.tau.empty();
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
@@ -50,7 +55,7 @@ Equations::Equations(const Model& model)
 
 NodeGeometry Equations::geometry() const {
   const bool tetrahedra = numbering().kind == CellKind::tet4 || numbering().kind == CellKind::tet10;
-  return {X_, edge_ends(numbering()), tetrahedra && numbering().components == 3};
+  return {X_, edge_ends(numbering()), tetrahedra && numbering().components == 3, poisson_ratio_};
 }
 
 double Equations::total_mass() const {

@@ -78,6 +78,7 @@ class Equations {
   Vector X_;
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;
+  double poisson_ratio_ = 0;  ///< the largest of the regions
   bool small_strain_ = true, has_followers_ = false, has_dampers_ = false, has_history_ = false;
 };
 

@@ -20,9 +20,9 @@ class Law;  // solver/materials/law.hpp
 /// k; lanes that are not named repeat the last.
 using LocalLaw = std::function<std::shared_ptr<const Law>(std::span<const int> elements)>;
 
-/// The law where parameters vary inside elements: lane k is a quadrature point at reference position places[k]; lanes
-/// that are not named repeat the last.
-using PointLaw = std::function<std::shared_ptr<const Law>(std::span<const Vec3> places)>;
+/// The law where parameters vary inside elements: lane k is a quadrature point of elements[k] at reference position
+/// places[k]; elements and lanes that are not named repeat the last.
+using PointLaw = std::function<std::shared_ptr<const Law>(std::span<const int> elements, std::span<const Vec3> places)>;
 
 /// Quasi-linear viscoelasticity: the second Piola stress is the convolution of G(t) = 1 - sum_i g_i (1 - exp(-t/tau_i))
 /// with the rate of the law's own. The law is the instantaneous one, or the long-term one, which is then divided by
@@ -36,10 +36,11 @@ struct Prony {
 struct Region {
   std::string name;
   std::shared_ptr<const Law> law;  ///< where local_law is set: a typical one, for messages and settings
-  double density = 1;              ///< mass per reference volume, >= 0
+  double density = 1;              ///< mass per reference volume, >= 0; where density_at is set: a typical one
   std::vector<int> elements;       ///< cell ids of Model::mesh
   LocalLaw local_law = {};         ///< empty: `law` everywhere
-  PointLaw point_law = {};         ///< if set, instead of both; standard elements only
+  PointLaw point_law = {};         ///< if set, instead of both
+  std::function<double(int element, const Vec3& X)> density_at = {};  ///< if set, instead of density
   Prony prony = {};
 };
 
@@ -166,8 +167,9 @@ struct Step {
   double dt = 0.05;  ///< time, > 0
   int count = 100;   ///< number of time steps
   Vec3 gravity = Vec3(0, 0, -9.81);
-  VectorFunction gravity_function = {};  ///< if set, instead of `gravity`; taken at the nodes
-  bool gravity_steady = false;           ///< it does not depend on t: it ramps in statics as a constant does
+  VectorFunction gravity_function = {};    ///< if set, instead of `gravity`; taken at the nodes
+  bool gravity_steady = false;             ///< it does not depend on t: it ramps in statics as a constant does
+  std::vector<double> gravity_kinks = {};  ///< times where gravity_function turns, which adaptive steps meet
   std::vector<Prescribed> prescribed;
   std::vector<NodalForce> forces;
   std::vector<FaceLoad> face_loads;

@@ -14,12 +14,6 @@
 
 namespace msml {
 
-std::string trimmed(const std::string& text) {
-  const auto first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
-}
-
 std::string quoted_value(const std::string& text) { return shortened(text); }
 
 namespace {
@@ -111,31 +105,6 @@ Parsed parse_formula(const Slot& slot, const std::string& text, const std::strin
   return {{}, fmt::format("{} = {} {}", label, quoted_value(text), what)};
 }
 
-/// Parts of a list outside parentheses: at commas if there are any, else at blanks.
-std::vector<std::string> formula_parts(const std::string& text) {
-  std::string inner = trimmed(text);
-  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
-  std::vector<std::string> by_comma{""}, by_blank{""};
-  int depth = 0;
-  for (const char c : inner) {
-    depth += (c == '(') - (c == ')');
-    if (c == ',' && depth <= 0)
-      by_comma.emplace_back();
-    else
-      by_comma.back() += c;
-    if (std::string(" \t\r\n").find(c) != std::string::npos && depth <= 0)
-      by_blank.emplace_back();
-    else
-      by_blank.back() += c;
-  }
-  if (by_comma.size() == 1) {
-    std::erase(by_blank, "");
-    return by_blank;
-  }
-  for (std::string& part : by_comma) part = trimmed(part);
-  return by_comma;
-}
-
 Parsed parse_formulas(const Slot& slot, const std::string& text) {
   Formulas list;
   std::vector<std::string> parts = list_parts(text);
@@ -143,7 +112,7 @@ Parsed parse_formulas(const Slot& slot, const std::string& text) {
     double value = 0;
     return read(part, value) != std::errc::invalid_argument;
   });
-  if (!plain) parts = formula_parts(text);
+  if (!plain) parts = expression_parts(text);
   if (!plain && length_problem(slot, 1).empty() && text.find(',') == std::string::npos && examine(text).problem.empty())
     parts = {text};
   for (const std::string& part : parts) {

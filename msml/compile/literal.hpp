@@ -9,8 +9,6 @@
 
 namespace msml {
 
-std::string trimmed(const std::string& text);
-
 /// The value, or what is wrong with it ("youngModulus = -3 is not > 0"). For the types nothing is read from disk for:
 /// boolean, integer, number, text, integers, numbers, words, formula, formulas, index_set. `indexes` is what a list of
 /// indices counts.

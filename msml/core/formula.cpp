@@ -94,6 +94,30 @@ FormulaFacts examine(const std::string& expression) {
   return facts;
 }
 
+std::vector<std::string> expression_parts(const std::string& text) {
+  std::string inner = trimmed(text);
+  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
+  std::vector<std::string> by_comma{""}, by_blank{""};
+  int depth = 0;
+  for (const char c : inner) {
+    depth += (c == '(') - (c == ')');
+    if (c == ',' && depth <= 0)
+      by_comma.emplace_back();
+    else
+      by_comma.back() += c;
+    if (std::string(" \t\r\n").find(c) != std::string::npos && depth <= 0)
+      by_blank.emplace_back();
+    else
+      by_blank.back() += c;
+  }
+  if (by_comma.size() == 1) {
+    std::erase(by_blank, "");
+    return by_blank;
+  }
+  for (std::string& part : by_comma) part = trimmed(part);
+  return by_comma;
+}
+
 struct Function::Parsed {
   Formula formula;
   std::string name;

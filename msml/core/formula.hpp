@@ -17,6 +17,9 @@ struct FormulaFacts {
 };
 FormulaFacts examine(const std::string& expression);
 
+/// Parts of a list outside parentheses: at commas if there are any, else at blanks. One pair of braces is dropped.
+std::vector<std::string> expression_parts(const std::string& text);
+
 /// One line that says what an expression may use, for messages and help.
 std::string formula_language();
 

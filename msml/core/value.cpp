@@ -40,11 +40,13 @@ std::string with_article(Type type) {
 
 bool is_data(Type type) { return type >= Type::mesh; }
 
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n"), last = text.find_last_not_of(" \t\r\n");
+  return first == std::string_view::npos ? std::string() : std::string(text.substr(first, last - first + 1));
+}
+
 std::vector<std::string> list_parts(const std::string& text) {
-  constexpr const char* blanks = " \t\r\n";
-  const std::size_t first = text.find_first_not_of(blanks);
-  if (first == std::string::npos) return {};
-  std::string inner = text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  std::string inner = trimmed(text);
   if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
   std::vector<std::string> parts;
   std::size_t i = 0;

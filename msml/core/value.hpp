@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -134,6 +135,9 @@ std::string with_article(Type type);
 
 /// True for the types that a file can hold: mesh, surface, image, images, index_set, field.
 bool is_data(Type type);
+
+/// The text without blanks at its ends.
+std::string trimmed(std::string_view text);
 
 /// Parts of a list: separated by blanks, commas or both; one pair of surrounding braces is dropped.
 std::vector<std::string> list_parts(const std::string& text);

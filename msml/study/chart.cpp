@@ -217,8 +217,7 @@ class Drawing {
     return text;
   }
 
-  /// Dashed lines across at the values of x that theory names.
-  /// Runs that did not end well, as crosses on the lower axis.
+  /// Runs that did not end well, as crosses on the lower axis: its end in the digits of the range, or they are cut off.
   std::string failed() {
     std::string points;
     std::size_t count = 0;
@@ -227,7 +226,7 @@ class Drawing {
       ++count;
       std::vector<double> x;
       add(x, row, chart_.x, x_.log);
-      if (!x.empty()) points += fmt::format("{:.10g} {:.10g}\n", x.front(), y_.low);
+      if (!x.empty()) points += fmt::format("{:.10g} {:.12g}\n", x.front(), y_.low);
     }
     if (points.empty()) return {};
     return fmt::format(

@@ -23,11 +23,6 @@ const std::map<std::string, Stored, std::less<>>& types() {
 
 using Keys = std::map<std::string, std::string, std::less<>>;
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string_view::npos ? std::string() : std::string(text.substr(first, last - first + 1));
-}
-
 /// Reads the header lines; `data` becomes the position behind them.
 Keys keys_of(std::string_view bytes, std::size_t& data) {
   Keys keys;

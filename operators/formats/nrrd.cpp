@@ -36,11 +36,6 @@ const std::map<std::string, Stored, std::less<>>& types() {
   return known;
 }
 
-std::string trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r"), last = text.find_last_not_of(" \t\r");
-  return first == std::string_view::npos ? std::string() : std::string(text.substr(first, last - first + 1));
-}
-
 Keys keys_of(std::string_view bytes, std::size_t& data) {
   if (!bytes.starts_with("NRRD000")) throw Error("is no NRRD file: it does not begin with NRRD000");
   Keys keys;

@@ -106,11 +106,6 @@ const Record& material_of(const Record& region, bool particles) {
   return *material;
 }
 
-double density(const Record& region) {
-  const Record* given = first_of(region, "mass");
-  return given == nullptr ? 1.0 : make<double>(*given);
-}
-
 }  // namespace
 
 std::string region_name(const Record& record, std::size_t position) {
@@ -129,11 +124,9 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
   std::vector<fe::Region> regions;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& material = material_of(*records[i], false);
-    fe::Region region{.name = region_name(*records[i], i),
-                      .law = nullptr,
-                      .density = density(*records[i]),
-                      .elements = owners.elements(i)};
+    fe::Region region{.name = region_name(*records[i], i), .law = nullptr, .elements = owners.elements(i)};
     set_material(material, body, region);
+    if (const Record* mass = first_of(*records[i], "mass")) set_density(*mass, body, region);
     if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }

@@ -133,6 +133,7 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   if (check.lowest_period > 0)
     text += line("lowest period", fmt::format("{:.4g}, damped by {:.3g} % a cycle by the time step",
                                               check.lowest_period, 100 * check.damped_per_cycle));
+  for (const std::string& note : outcome.notes) text += line("note", note);
   text += line("unknowns", with_commas(outcome.unknowns));
   text += line("solves", fmt::format("{} of Newton, {} linear", outcome.newton_iterations, outcome.linear_solves));
   return text + time_text(outcome, times, fe::is_dynamic(simulation.model.settings.integrator)) + memory_text(outcome);

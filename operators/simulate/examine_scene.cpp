@@ -9,7 +9,7 @@
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
-#include "operators/simulate/region_materials.hpp"
+#include "operators/simulate/varying_record.hpp"
 #include "solver/combinations.hpp"
 #include "solver/materials/fibres.hpp"
 #include "solver/materials/law.hpp"
@@ -21,8 +21,10 @@ using Report = std::function<void(const Error&)>;
 using LawPtr = std::shared_ptr<const fe::Law>;
 
 bool varies(const Value& value) {
+  const auto changes = [](const Formula& formula) { return !formula.constant(); };
   const auto* formula = std::get_if<Formula>(&value);
-  return formula != nullptr && !formula->constant();
+  const auto* list = std::get_if<Formulas>(&value);
+  return (formula != nullptr && changes(*formula)) || (list != nullptr && std::ranges::any_of(*list, changes));
 }
 
 /// A direction that names a field of the mesh.
@@ -75,11 +77,10 @@ Part part_of(const Record& record, std::size_t position, bool particles, const R
   const Record& material = *part.material;
   attempt(material, fault, [&] {
     check_material(material, particles);
-    check_sources(material);
+    VaryingRecord::check(material);
     if (material.tag() != "pointMass" && complete(material)) part.region.law = make<LawPtr>(material);
   });
-  if (std::any_of(material.values.begin(), material.values.end(), varies))
-    part.region.point_law = [](std::span<const Vec3>) { return LawPtr(); };
+  if (const Record* mass = first_of(record, "mass")) attempt(*mass, fault, [&] { VaryingRecord::check(*mass); });
   return part;
 }
 
@@ -143,8 +144,8 @@ bool damps(const Record& args) {
   for (const Record* condition : all_of(args, "constraint"))
     for (const char* attribute : {"damping", "rayleighStiffnes"})
       if (const int slot = condition->description->find(attribute); slot >= 0)
-        if (const auto* value = std::get_if<double>(&condition->values[static_cast<std::size_t>(slot)]))
-          if (*value > 0) return true;
+        if (const auto* value = std::get_if<Formula>(&condition->values[static_cast<std::size_t>(slot)]))
+          if (!value->constant() || value->number > 0) return true;
   return false;
 }
 

@@ -171,11 +171,15 @@ std::vector<Factory<MeshChoice>> mesh_kinds() {
 
 Factory<double> mass() {
   Factory<double> tag("mass", "mass", "The density of a region.");
-  const auto density = tag.parameter("massDensity", {.unit = "mass/volume",
-                                                     .range = positive(),
-                                                     .fallback = 1.0,
-                                                     .doc = "per reference volume, one number for the region"});
-  tag.build([=](const Record& record) { return record[density]; });
+  const auto density =
+      tag.parameter<Formula>("massDensity", {.unit = "mass/volume",
+                                             .range = positive(),
+                                             .fallback = 1.0,
+                                             .doc = "per reference volume: a number, or an expression in X, Y, Z"});
+  tag.parameter<std::string>(
+      "fields", {.optional = true,
+                 .doc = "\"massDensity=rho\": the density of each element from the cell field rho of the mesh"});
+  tag.build([=](const Record& record) { return record[density].number; });
   return tag;
 }
 

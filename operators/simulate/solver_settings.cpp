@@ -259,7 +259,9 @@ Factory<fe::Step> step() {
                   .gravity = Vec3::Zero()};
     made.gravity_steady = !record.has(table) && !g[0].of_time() && !g[1].of_time() && !g[2].of_time();
     if (record.has(table)) {
-      made.gravity_function = [factor = read_table(record, table), vector = vector_of(g)](const Vec3& X, double t) {
+      const fe::TimeFunction factor = read_table(record, table);
+      made.gravity_kinks = factor.kinks;
+      made.gravity_function = [factor, vector = vector_of(g)](const Vec3& X, double t) {
         return Vec3(factor(t) * vector(X, t));
       };
       return made;

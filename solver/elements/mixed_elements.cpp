@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include "solver/elements/element_sums.hpp"
-#include "solver/elements/mass.hpp"
 
 namespace msml::fe {
 namespace {
@@ -77,14 +76,13 @@ struct MixedElements::Values {
   Lanes p;
 };
 
-MixedElements::MixedElements(const Model& model) : numbering_(number(model)) {
+MixedElements::MixedElements(const Model& model) : numbering_(number(model)), densities_(model) {
   const Rule<3> rule = four_point_rule();
   for (std::size_t q = 0; q < rule.size(); ++q) {
     reference_gradients_[q] = Tetrahedron<body>::gradients(rule[q].xi);
     barycentric_[q] = Tetrahedron<body>::barycentric(rule[q].xi);
   }
   for (const int node : numbering_.element_nodes) cells_.push_back(numbering_.node_of[static_cast<std::size_t>(node)]);
-  for (const Region& region : model.regions) densities_.push_back(region.density);
   const std::vector<int> element_nodes = with_pressure_nodes(numbering_);
   pattern_ = make_pattern(numbering_.nodes(), element_nodes, nodes, numbering_.links);
   make_batches(model, element_nodes);
@@ -112,6 +110,7 @@ void MixedElements::make_batches(const Model& model, const std::vector<int>& ele
 
 void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const {
   const Rule<3> rule = four_point_rule();
+  std::vector<std::vector<Vec3>> places(rule.size());
   for (int lane = 0; lane < lanes; ++lane) {
     const int e = batch.first + std::min(lane, batch.count - 1);
     std::copy_n(element_nodes.begin() + nodes * e, nodes, batch.node[lane]);
@@ -120,13 +119,14 @@ void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vecto
         batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
     const int* ids = cells_.data() + body * e;
     for (std::size_t q = 0; q < rule.size(); ++q) {
+      if (lane < batch.count) places[q].push_back(place<3, body>(positions(), ids, rule[q].xi));
       const Mat3 J = jacobian<3, body>(positions(), ids, rule[q].xi), inverse = J.inverse();
       for (int k = 0; k < 9; ++k) batch.point[q].inverse.c[k][lane] = inverse(k / 3, k % 3);
       batch.point[q].weight[lane] = lane < batch.count ? rule[q].weight * J.determinant() : 0.0;
     }
   }
-  batch.law = split_of(model.regions[static_cast<std::size_t>(batch.region)],
-                       {numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count)});
+  batch.law = BatchSplit(model.regions[static_cast<std::size_t>(batch.region)],
+                         {numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count)}, places);
 }
 
 // A shear modulus over an element's size: pressures then have the size of displacements, and the constraint that of
@@ -171,22 +171,23 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
     H[q] = at[q].H;
   }
   const bool definite = want == Want::definite_tangent;
-  batch.law.rest->evaluate(want, {H, count}, {rest, count});
-  batch.law.constraint->evaluate(definite ? Want::stress : want, {H, count}, {volume, count});
+  batch.law.evaluate_rest(want, {H, count}, {rest, count});
+  batch.law.evaluate_constraint(definite ? Want::stress : want, {H, count}, {volume, count});
 
   Assembled found;
   Result result{};
   for (int q = 0; q < count; ++q) {
     const Lanes w = batch.point[q].weight, p = at[q].p, g = volume[q].energy;
+    const Lanes& compliance = batch.law.compliance(static_cast<std::size_t>(q));
     Response& sum = rest[q];
     for (int k = 0; k < 9; ++k) sum.P.c[k] += p * volume[q].P.c[k];
     add_force<3, body>(sum.P, w, at[q].g, result.force);
     Lanes share[corners];
     for (int c = 0; c < corners; ++c) {
       share[c] = barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)] * numbering_.pressure_scale * w;
-      result.volume[c] += share[c] * (g - p * batch.law.compliance);
+      result.volume[c] += share[c] * (g - p * compliance);
     }
-    note(w * (sum.energy + p * g - 0.5 * p * p * batch.law.compliance), volume_ratio(H[q]), batch.count,
+    note(w * (sum.energy + p * g - 0.5 * p * p * compliance), volume_ratio(H[q]), batch.count,
          numbering_.elements.data() + batch.first, found);
     if (!matrix) continue;
     for (int k = 0; k < 45 && !definite; ++k) sum.tangent[k] += p * volume[q].tangent[k];
@@ -195,7 +196,7 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
       for (int a = 0; a < body; ++a)
         for (int i = 0; i < 3; ++i) result.coupling[a][c][i] += share[c] * inner<3>(volume[q].P.c + 3 * i, at[q].g[a]);
       for (int d = 0; d < corners; ++d)
-        result.pressure[c][d] -= share[c] * batch.law.compliance * numbering_.pressure_scale *
+        result.pressure[c][d] -= share[c] * compliance * numbering_.pressure_scale *
                                  barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(d)];
     }
   }
@@ -212,9 +213,8 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
   for (const MixedBatch& batch : batches_)
     for (int lane = 0; lane < batch.count; ++lane) {
       const int* ids = cells_.data() + body * (batch.first + lane);
-      ElementMass<body> M =
-          consistent_mass<3, body>(positions(), ids, densities_[static_cast<std::size_t>(batch.region)]);
-      if (lumped) M = lumped_mass<body>(M);
+      const int cell = numbering_.elements[static_cast<std::size_t>(batch.first + lane)];
+      const ElementMass<body> M = densities_.mass<3, body>(positions(), ids, batch.region, cell, lumped);
       for (int a = 0; a < body; ++a)
         for (int b = 0; b < body; ++b)
           mass.values[static_cast<std::size_t>(batch.position[lane][a * nodes + b])] += M(a, b);
@@ -222,7 +222,9 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
 }
 
 std::size_t MixedElements::bytes() const {
-  return numbering_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
+  for (const MixedBatch& batch : batches_) sum += batch.law.bytes();
+  return sum;
 }
 
 void MixedElements::visit_points(const Vector& u, const PointsVisitor& visit) const {

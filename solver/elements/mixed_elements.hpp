@@ -3,6 +3,7 @@
 #pragma once
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
+#include "solver/elements/mass.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/elements/split_laws.hpp"
 
@@ -50,7 +51,7 @@ class MixedElements final : public Elements {
   Numbering numbering_;
   PatternPtr pattern_;
   std::vector<int> cells_;  ///< mesh points of the ten nodes of each element of numbering()
-  std::vector<double> densities_;
+  Densities densities_;
   std::vector<MixedBatch> batches_;
   std::vector<std::vector<Chunk>> colours_;
   std::array<std::array<std::array<double, 3>, MixedBatch::body>, MixedBatch::points> reference_gradients_;

@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "solver/elements/element_sums.hpp"
-#include "solver/elements/mass.hpp"
 
 namespace msml::fe {
 namespace {
@@ -84,8 +83,7 @@ void add_coupling(const Patch& patch, double factor, const double* d, BlockMatri
 
 }  // namespace
 
-PatchElements::PatchElements(const Model& model) : numbering_(number(model)) {
-  for (const Region& region : model.regions) densities_.push_back(region.density);
+PatchElements::PatchElements(const Model& model) : numbering_(number(model)), densities_(model) {
   for (const std::vector<int>& elements : make_patches(numbering_, patch_size)) make_patch(elements, model);
   find_positions();
   std::vector<std::vector<int>> patch_nodes;
@@ -109,7 +107,7 @@ void PatchElements::make_patch(const std::vector<int>& elements, const Model& mo
       batch.element[lane] = elements[first + static_cast<std::size_t>(std::min(lane, batch.count - 1))];
     fill(batch, patch, model);
     patch.volume += sum(batch.weight);
-    for (int lane = 0; lane < batch.count; ++lane) patch.modulus += batch.weight[lane] * batch.law.modulus[lane];
+    for (int lane = 0; lane < batch.count; ++lane) patch.modulus += batch.weight[lane] * batch.law.modulus(0)[lane];
     batches_.push_back(batch);
   }
   patch.modulus /= patch.volume;
@@ -119,6 +117,7 @@ void PatchElements::make_patch(const std::vector<int>& elements, const Model& mo
 
 void PatchElements::fill(PatchBatch& batch, const Patch& patch, const Model& model) {
   const auto reference = Tetrahedron<4>::gradients({0.25, 0.25, 0.25});
+  std::vector<Vec3> middles;
   for (int lane = 0; lane < lanes; ++lane) {
     const std::size_t e = static_cast<std::size_t>(batch.element[lane]);
     batch.cell[lane] = numbering_.elements[e];
@@ -129,14 +128,16 @@ void PatchElements::fill(PatchBatch& batch, const Patch& patch, const Model& mod
     }
     const Mat3 J = jacobian<3, 4>(positions(), model.mesh->cell(batch.cell[lane]), {0.25, 0.25, 0.25}),
                inverse = J.inverse();
+    if (lane < batch.count)
+      middles.push_back(place<3, 4>(positions(), model.mesh->cell(batch.cell[lane]), {0.25, 0.25, 0.25}));
     batch.weight[lane] = lane < batch.count ? J.determinant() / 6 : 0.0;
     for (int a = 0; a < 4; ++a)
       for (int k = 0; k < 3; ++k)
         batch.g[a][k][lane] =
             Eigen::Map<const Eigen::RowVector3d>(reference[static_cast<std::size_t>(a)].data()) * inverse.col(k);
   }
-  batch.law = split_of(model.regions[static_cast<std::size_t>(patch.region)],
-                       {batch.cell, static_cast<std::size_t>(batch.count)});
+  batch.law = BatchSplit(model.regions[static_cast<std::size_t>(patch.region)],
+                         {batch.cell, static_cast<std::size_t>(batch.count)}, {&middles, 1});
 }
 
 void PatchElements::find_positions() {
@@ -161,8 +162,8 @@ Assembled PatchElements::add_patch(const Patch& patch, const Vector& u, Want wan
   double gbar = 0;
   for (int b = 0; b < patch.batches; ++b) {
     const Gradients H = gradient(batches[b], u);
-    batches[b].law.rest->evaluate(want, {&H, 1}, {&at[b].rest, 1});
-    batches[b].law.constraint->evaluate(definite ? Want::stress : want, {&H, 1}, {&at[b].volume, 1});
+    batches[b].law.evaluate_rest(want, {&H, 1}, {&at[b].rest, 1});
+    batches[b].law.evaluate_constraint(definite ? Want::stress : want, {&H, 1}, {&at[b].volume, 1});
     at[b].J = volume_ratio(H);
     gbar += sum(batches[b].weight * at[b].volume.energy) / patch.volume;
   }
@@ -189,8 +190,7 @@ void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
       for (int lane = 0; lane < batch.count; ++lane) {
         int ids[4];
         for (int a = 0; a < 4; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
-        ElementMass<4> M = consistent_mass<3, 4>(positions(), ids, densities_[static_cast<std::size_t>(patch.region)]);
-        if (lumped) M = lumped_mass<4>(M);
+        const ElementMass<4> M = densities_.mass<3, 4>(positions(), ids, patch.region, batch.cell[lane], lumped);
         for (int i = 0; i < 4; ++i)
           for (int j = 0; j < 4; ++j) {
             const std::size_t place = static_cast<std::size_t>(batch.local[lane][i]) * patch.nodes.size() +
@@ -203,6 +203,7 @@ void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
 
 std::size_t PatchElements::bytes() const {
   std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(PatchBatch) + patches_.size() * sizeof(Patch);
+  for (const PatchBatch& batch : batches_) sum += batch.law.bytes();
   for (const Patch& patch : patches_) sum += (patch.nodes.size() + patch.positions.size()) * sizeof(int);
   return sum;
 }
@@ -215,7 +216,7 @@ void PatchElements::visit_points(const Vector& u, const PointsVisitor& visit) co
       const PatchBatch& batch = batches_[static_cast<std::size_t>(patch.first_batch + b)];
       const Gradients H = gradient(batch, u);
       Response volume;
-      batch.law.constraint->evaluate(Want::stress, {&H, 1}, {&volume, 1});
+      batch.law.evaluate_constraint(Want::stress, {&H, 1}, {&volume, 1});
       gbar += sum(batch.weight * volume.energy) / patch.volume;
     }
     for (int b = 0; b < patch.batches; ++b) {

@@ -2,6 +2,7 @@
 // Linear tetrahedra whose volume change is averaged over patches.
 #pragma once
 #include "solver/elements/chunks.hpp"
+#include "solver/elements/mass.hpp"
 #include "solver/elements/patches.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/elements/split_laws.hpp"
@@ -54,7 +55,7 @@ class PatchElements final : public Elements {
 
   Numbering numbering_;
   PatternPtr pattern_;
-  std::vector<double> densities_;
+  Densities densities_;
   std::vector<PatchBatch> batches_;
   std::vector<Patch> patches_;
   std::vector<std::vector<Chunk>> colours_;  ///< of patches

@@ -27,7 +27,10 @@ struct BatchLaws {
 };
 
 /// The laws of up to eight elements of a region, lane k for element k. `places[q]` holds the reference positions of
-/// quadrature point q in each of them. Triangles in plane stress get the law with P_33 = 0.
+/// quadrature point q in each of them.
+BatchLaws laws_of(const Region& region, std::span<const int> elements, std::span<const std::vector<Vec3>> places);
+
+/// The same; triangles in plane stress get the law with P_33 = 0.
 BatchLaws laws_of(const Model& model, const Region& region, std::span<const int> elements,
                   std::span<const std::vector<Vec3>> places);
 

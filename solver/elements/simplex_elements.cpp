@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/elements/mass.hpp"
 #include "solver/elements/simplex_kernels.hpp"
 
 namespace msml::fe {
@@ -15,11 +14,11 @@ template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
       pattern_(make_pattern(numbering_.nodes(), numbering_.element_nodes, nodes, numbering_.links)),
+      densities_(model),
       thickness_(dimension < 3 ? model.thickness : 1),
       stored_energies_(model.stored_energies) {
   const Rule<dimension> places = rule();
   for (std::size_t q = 0; q < count; ++q) reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
-  for (const Region& region : model.regions) densities_.push_back(region.density);
   make_batches(model);
   std::vector<std::vector<int>> batch_nodes;
   for (const Batch& batch : batches_) {
@@ -171,9 +170,9 @@ void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatri
     for (int lane = 0; lane < batch.count; ++lane) {
       int ids[nodes];
       for (int a = 0; a < nodes; ++a) ids[a] = numbering_.node_of[static_cast<std::size_t>(batch.node[lane][a])];
-      ElementMass<nodes> M = consistent_mass<dimension, nodes>(
-          positions(), ids, thickness_ * densities_[static_cast<std::size_t>(batch.region)]);
-      if (lumped) M = lumped_mass<nodes>(M);
+      const int cell = numbering_.elements[static_cast<std::size_t>(batch.first + lane)];
+      const ElementMass<nodes> M =
+          densities_.mass<dimension, nodes>(positions(), ids, batch.region, cell, lumped, thickness_);
       for (int k = 0; k < nodes * nodes; ++k)
         mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
     }

@@ -3,6 +3,7 @@
 #pragma once
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
+#include "solver/elements/mass.hpp"
 #include "solver/elements/prony_history.hpp"
 #include "solver/elements/region_laws.hpp"
 #include "solver/elements/shapes.hpp"
@@ -66,7 +67,7 @@ class SimplexElements final : public Elements {
 
   Numbering numbering_;
   PatternPtr pattern_;
-  std::vector<double> densities_;
+  Densities densities_;
   double thickness_ = 1;
   bool stored_energies_ = true;
   std::vector<Batch> batches_;

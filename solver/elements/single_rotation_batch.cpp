@@ -160,15 +160,15 @@ void add_rotation_terms(const RotationBatch& batch, const RotationState& state, 
 
 RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
                                   const std::function<void(int, SimplexGradients<3, 10>&)>& gradients) {
-  Gradients rest{};
-  Response response;
-  batch.laws.evaluate(Want::tangent, {&rest, 1}, {&response, 1});
+  const Gradients rest[4] = {};
+  Response response[4];
+  batch.laws.evaluate(Want::tangent, rest, response);
   SimplexResult<3, 10> stiffness{};
   RotationBatch own{};
   for (int q = 0; q < 4; ++q) {
     SimplexGradients<3, 10> g;
     gradients(q, g);
-    add_stiffness<3, 10>(response.tangent, batch.points[q].weight, g, stiffness);
+    add_stiffness<3, 10>(response[q].tangent, batch.points[q].weight, g, stiffness);
     // A corner's linear shape function is its quadratic one plus half of those of its three mid nodes.
     for (int a = 0; a < 4 && q == 0; ++a)
       for (int i = 0; i < 3; ++i) {

@@ -2,18 +2,28 @@
 // Takes laws apart.
 #include "solver/elements/split_laws.hpp"
 
+#include "solver/elements/region_laws.hpp"
+
 namespace msml::fe {
 
-BatchSplit split_of(const Region& region, std::span<const int> elements) {
-  const Split split = (region.local_law ? region.local_law(elements) : region.law)->split().value();
-  BatchSplit batch{split.rest, split.constraint, lanes_of(split.modulus), {}};
-  if (region.local_law)
-    for (int lane = 0; lane < lanes; ++lane) {
-      const std::size_t e = std::min(static_cast<std::size_t>(lane), elements.size() - 1);
-      batch.modulus[lane] = region.local_law(elements.subspan(e, 1))->split().value().modulus;
-    }
-  batch.compliance = 1 / batch.modulus;
-  return batch;
+BatchSplit::BatchSplit(const Region& region, std::span<const int> elements, std::span<const std::vector<Vec3>> places) {
+  for (const auto& law : laws_of(region, elements, places).laws) {
+    const Split split = law->split().value();
+    points_.push_back({split.rest, split.constraint, split.modulus, 1 / split.modulus});
+  }
+}
+
+void BatchSplit::evaluate_rest(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const {
+  if (points_.size() == 1) return points_.front().rest->evaluate(want, gradients, responses);
+  for (std::size_t q = 0; q < gradients.size(); ++q)
+    of(q).rest->evaluate(want, gradients.subspan(q, 1), responses.subspan(q, 1));
+}
+
+void BatchSplit::evaluate_constraint(Want want, std::span<const Gradients> gradients,
+                                     std::span<Response> responses) const {
+  if (points_.size() == 1) return points_.front().constraint->evaluate(want, gradients, responses);
+  for (std::size_t q = 0; q < gradients.size(); ++q)
+    of(q).constraint->evaluate(want, gradients.subspan(q, 1), responses.subspan(q, 1));
 }
 
 }  // namespace msml::fe

@@ -14,6 +14,12 @@ namespace {
 
 constexpr int good_iterations = 5, most_cuts = 12;
 
+double largest_displacement(const Vector& u) {
+  double largest = 0;
+  for (Eigen::Index k = 0; k < u.size(); k += 3) largest = std::max(largest, u.segment<3>(k).norm());
+  return largest;
+}
+
 /// Crisfield's method (1981, doi 10.1016/0045-7949(81)90108-5) in its cylindrical form: |du| = length over each step,
 /// load factor free. The linear systems are indefinite past a limit point.
 struct Arc {
@@ -37,7 +43,17 @@ struct Arc {
     return length_to;
   }
 
-  ScaledLoads unit_loads() const { return path.loads(1); }
+  /// The share of a step to (u, lambda) after which it is at a bound; 1 where it does not pass one by more than 1e-3.
+  double share_within(const Vector& u, double lambda) const {
+    const ArcLength& bounds = run.model.settings.arc_length;
+    double share = 1;
+    const auto look = [&](double from, double to, double bound) {
+      if (to > 1.001 * bound && from < bound) share = std::min(share, std::max(0.05, (bound - from) / (to - from)));
+    };
+    look(std::abs(run.now.load_factor), std::abs(lambda), bounds.load);
+    look(largest_displacement(run.now.u), largest_displacement(u), bounds.displacement);
+    return share;
+  }
 
   /// Load per factor at u.
   Vector reference(const Vector& u) const {
@@ -134,9 +150,8 @@ void check_supports(const Run& run, const EquilibriumPath& path, const Step& ste
 
 bool enough(const Run& run, int taken) {
   const ArcLength& arc = run.model.settings.arc_length;
-  double largest = 0;
-  for (Eigen::Index k = 0; k < run.now.u.size(); k += 3) largest = std::max(largest, run.now.u.segment<3>(k).norm());
-  return taken >= arc.steps || std::abs(run.now.load_factor) >= arc.load || largest >= arc.displacement;
+  return taken >= arc.steps || std::abs(run.now.load_factor) >= arc.load ||
+         largest_displacement(run.now.u) >= arc.displacement;
 }
 
 /// Takes the next step along the arc, shorter where it fails.
@@ -146,8 +161,9 @@ bool advance(Arc& arc) {
   double lambda = 0;
   for (int cut = 0; cut < most_cuts; ++cut) {
     result = arc.step(lambda);
-    if (result.stop == Stop::converged) break;
-    arc.length *= 0.5;
+    const double share = result.stop == Stop::converged ? arc.share_within(result.u, lambda) : 0.5;
+    if (share == 1) break;
+    arc.length *= share;
   }
   if (result.stop != Stop::converged) {
     run.newton.prepare(run.now.u, arc.path.loads(run.now.load_factor));

@@ -95,11 +95,14 @@ bool Run::start_at_rest() {
 double next_stop(const Step& step, double from, double to) {
   double next = to;
   const double least = from + 1e-9 * step.dt;
-  const auto look = [&](const auto& conditions) {
-    for (const auto& condition : conditions)
-      for (const double kink : condition.factor.kinks)
-        if (kink > least) next = std::min(next, kink);
+  const auto meet = [&](const std::vector<double>& kinks) {
+    for (const double kink : kinks)
+      if (kink > least) next = std::min(next, kink);
   };
+  const auto look = [&](const auto& conditions) {
+    for (const auto& condition : conditions) meet(condition.factor.kinks);
+  };
+  meet(step.gravity_kinks);
   look(step.prescribed);
   look(step.forces);
   look(step.face_loads);

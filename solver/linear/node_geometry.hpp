@@ -12,8 +12,9 @@ namespace msml::fe {
 struct NodeGeometry {
   Vector positions;  ///< 3 per node, reference
   std::vector<std::array<int, 2>>
-      ends;           ///< of each mid node the ends of its edge; {-1, -1} at other nodes; empty: none
-  bool solid = true;  ///< the unknowns are the displacements of a body of tetrahedra
+      ends;                  ///< of each mid node the ends of its edge; {-1, -1} at other nodes; empty: none
+  bool solid = true;         ///< the unknowns are the displacements of a body of tetrahedra
+  double poisson_ratio = 0;  ///< the largest of the body
 };
 
 }  // namespace msml::fe

@@ -16,8 +16,10 @@ namespace msml::fe {
 namespace {
 
 constexpr const char* field_note =
-    "A direction is three numbers, of any length but 0, or the name of a cell field of the mesh with three components: "
-    "the direction in each element. Opposite directions mean the same.";
+    "A direction is three numbers, of any length but 0; three expressions in X, Y and Z, apart by commas where they "
+    "hold "
+    "blanks; or the name of a cell field of the mesh with three components: the direction in each element. Opposite "
+    "directions mean the same.";
 
 Key<std::string> describe_direction(Description& material, const std::string& name, bool optional,
                                     const std::string& doc) {
@@ -31,9 +33,9 @@ Direction<Lanes> direction(const Record& record, Key<std::string> key) {
   const std::string& text = record[key];
   const std::vector<double> numbers = direction_numbers(text);
   if (numbers.empty())
-    throw Error(
-        fmt::format("{}: {} = '{}' is neither three numbers nor a cell field of the mesh", record.tag(), name, text),
-        record.where);
+    throw Error(fmt::format("{}: {} = '{}' is neither three numbers or expressions nor a cell field of the mesh",
+                            record.tag(), name, text),
+                record.where);
   const double length = std::hypot(numbers[0], numbers[1], numbers[2]);
   if (!(length > 0) || !std::isfinite(length))
     throw Error(fmt::format("{}: {} = '{}' has no direction", record.tag(), name, text), record.where);

@@ -42,7 +42,7 @@ class Law;
 struct Split {
   std::shared_ptr<const Law> rest;        ///< W without its volumetric term
   std::shared_ptr<const Law> constraint;  ///< g as if it were an energy: Response holds g, dg/dF and d2g/dF2
-  double modulus = std::numeric_limits<double>::infinity();  ///< stress; infinite if incompressible
+  Lanes modulus = lanes_of(std::numeric_limits<double>::infinity());  ///< stress; infinite if incompressible
 };
 
 /// Place of entry (i, j), i >= j, in Response::tangent.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "msml/core/error.hpp"
+#include "solver/materials/clamped.hpp"
 #include "solver/materials/corotation.hpp"
 
 namespace msml::fe {
@@ -118,7 +119,7 @@ class LinearLaw final : public Law {
   std::optional<Split> split() const override {
     return Split{.rest = std::make_shared<LinearLaw>(data_, Lame{lame_.mu, {}}),
                  .constraint = std::make_shared<TraceConstraint>(data_),
-                 .modulus = lame_.lambda[0]};
+                 .modulus = lame_.lambda};
   }
   std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {
     Lame mixed = lame_;
@@ -189,7 +190,17 @@ Factory<std::shared_ptr<const Law>> linear_elastic_material() {
                   .choices = {"exact", "rotated"},
                   .doc = "corotated only: the derivative of the stress, or R K R^T, which is never indefinite. Absent: "
                          "exact, but rotated with one linear solve per step"});
+  const InversionKeys inversion = describe_inversion(material);
+  material.note(
+      "The corotated law is quadratic in the signed principal stretches, so that its continuation below clampedBelow "
+      "is "
+      "the law itself: inversion = \"clamped\" changes nothing. Small strain has no stretches to clamp.");
   material.build([=](const Record& record) {
+    if (record[inversion.inversion] == "clamped" && record[strain] == "small")
+      throw Error(fmt::format("{}: inversion = \"clamped\" is about principal stretches, which strain = \"small\" does "
+                              "not have. Leave it out, or take strain = \"corotated\"",
+                              record.tag()),
+                  record.where);
     LinearElastic data{.youngs_modulus = record[young], .poisson_ratio = record[poisson]};
     data.strain = record[strain] == "small" ? Strain::small : Strain::corotated;
     data.tangent = !record.has(tangent)           ? TangentKind::automatic

@@ -50,7 +50,7 @@ class OgdenLaw final : public Law, public StretchLaw {
     facts.incompressible = false;
     Split split{.rest = std::make_shared<OgdenLaw>(kernel_, Volumetric<Lanes>{}, facts),
                 .constraint = make_volume_constraint(volumetric_.measure)};
-    if (!facts_.incompressible) split.modulus = volumetric_.modulus[0];
+    if (!facts_.incompressible) split.modulus = volumetric_.modulus;
     return split;
   }
   std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {

@@ -23,6 +23,15 @@ constexpr const char* volume_note =
               record.where);
 }
 
+/// Powers are the same everywhere; only c_ij may be an expression.
+std::string powers_are_numbers(const Value& value) {
+  const auto* terms = std::get_if<Formulas>(&value);
+  for (std::size_t k = 0; terms != nullptr && k < terms->size(); ++k)
+    if (k % 3 != 2 && !(*terms)[k].constant())
+      return fmt::format("the power {} is no number; only the c_ij may be expressions", (*terms)[k].text);
+  return {};
+}
+
 Polynomial<Lanes> polynomial_of(const Record& record, const std::vector<double>& terms) {
   Polynomial<Lanes> kernel;
   for (std::size_t k = 0; k + 2 < terms.size(); k += 3) {
@@ -90,7 +99,9 @@ MaterialFactory polynomial_material() {
                            "volumetric.");
   material.source("Rivlin and Saunders 1951, doi 10.1098/rsta.1951.0004");
   const auto terms = material.parameter<std::vector<double>>(
-      "terms", {.multiple_of = 3, .doc = "i j c_ij for each term, c_ij a stress; mu = 2 (c_10 + c_01) is > 0"});
+      "terms", {.multiple_of = 3,
+                .check = powers_are_numbers,
+                .doc = "i j c_ij for each term, c_ij a stress; mu = 2 (c_10 + c_01) is > 0"});
   const VolumeKeys keys = describe_volume(material);
   const InversionKeys inversion = describe_inversion(material);
   material.note(volume_note);

@@ -124,7 +124,7 @@ class PotentialLaw final : public Law, public StretchLaw {
     facts.incompressible = false;
     Split split{.rest = std::make_shared<PotentialLaw>(kernel_, Volumetric<Lanes>{}, facts),
                 .constraint = make_volume_constraint(volumetric_.measure)};
-    if (!facts_.incompressible) split.modulus = volumetric_.modulus[0];
+    if (!facts_.incompressible) split.modulus = volumetric_.modulus;
     return split;
   }
 

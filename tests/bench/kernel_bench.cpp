@@ -28,6 +28,8 @@ constexpr double neo_tangent = 45 * 9 + 45 + 36;                          // thr
 constexpr double gradient(int nodes) { return 15 * nodes + 18 * nodes; }  // dN/dX and H
 constexpr double force(int nodes) { return 18 * nodes + 25; }             // P dN/dX, det F, the energy
 constexpr double stiffness(int nodes) { return 138 * nodes + 54 * nodes * (nodes + 1) / 2.0; }
+constexpr double single_force = polar + 20 * 15 + 36 * 55 + 60;  // both rotations of vectors, K d, energy
+constexpr double single_tangent = 90 * 55;                       // R K R^T of 55 blocks
 }  // namespace operations
 
 /// The beam, bent and twisted so that strains are about 0.1 and rotations large.
@@ -38,8 +40,8 @@ struct Beam {
   fe::BlockMatrix matrix;
   int elements, nodes_per_element;
 
-  Beam(CellKind kind, int n, bool neo)
-      : model(model_of(kind, n, neo)),
+  Beam(CellKind kind, int n, bool neo, fe::Formulation formulation = fe::Formulation::standard)
+      : model(model_of(kind, n, neo, formulation)),
         equations(model),
         u(equations.size()),
         force(fe::Vector::Zero(equations.size())),
@@ -54,8 +56,9 @@ struct Beam {
     }
   }
 
-  static fe::Model model_of(CellKind kind, int n, bool neo) {
+  static fe::Model model_of(CellKind kind, int n, bool neo, fe::Formulation formulation) {
     fe::Model model = fe::testing::beam_model(n, kind, 0.3, fe::Strain::corotated);
+    model.formulation = formulation;
     const fe::Lame lame = fe::lame_of(1e5, 0.3);
     if (neo)
       model.regions[0].law = std::make_shared<fe::PotentialLaw<fe::IsochoricNeoHookean>>(
@@ -114,6 +117,22 @@ void tangent(benchmark::State& state, CellKind kind, int n, bool neo, int thread
   const double bytes = force_bytes(beam) + 4 * nodes * nodes + 3 * beam.matrix_bytes() / beam.elements;
   count(state, beam.elements, bytes,
         beam.points() * (law + operations::gradient(nodes) + operations::force(nodes) + operations::stiffness(nodes)));
+}
+
+/// Forces and the tangent of one linear solve per step, R K R^T, of quadratic tetrahedra: with a rotation at each of
+/// four points, or with one for the element, whose K is kept.
+void step_tangent(benchmark::State& state, int n, fe::Formulation formulation, int threads) {
+  Beam beam(CellKind::tet10, n, false, formulation);
+  repeat(state, threads, [&] {
+    beam.matrix.set_zero();
+    beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, &beam.matrix);
+    benchmark::DoNotOptimize(beam.matrix.values.data());
+  });
+  const bool single = formulation == fe::Formulation::single_rotation;
+  const double bytes = force_bytes(beam) + 400 + 3 * beam.matrix_bytes() / beam.elements + (single ? 8 * 9 * 55 : 0);
+  const double points = 4 * (operations::corotated_stress + 360 + operations::gradient(10) + operations::force(10) +
+                             operations::stiffness(10));
+  count(state, beam.elements, bytes, single ? operations::single_force + operations::single_tangent : points);
 }
 
 void matrix_product(benchmark::State& state, CellKind kind, int n, int threads) {
@@ -182,6 +201,12 @@ void add_kernels(int scale) {
       add("block matrix product " + element, threads, [=](auto& s) { matrix_product(s, kind, large, threads); });
       add("multigrid cycle " + element, threads, [=](auto& s) { multigrid_cycle(s, kind, large, threads); });
     }
+  }
+  for (const int threads : {1, 2}) {
+    const int n = 8 / scale;
+    add("step tangent tet10", threads, [=](auto& s) { step_tangent(s, n, fe::Formulation::standard, threads); });
+    add("step tangent tet10SR", threads,
+        [=](auto& s) { step_tangent(s, n, fe::Formulation::single_rotation, threads); });
   }
   add("polar decomposition", 1, polar_decomposition);
 }

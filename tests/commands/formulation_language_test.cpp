@@ -77,11 +77,12 @@ TEST(FormulationLanguage, ASingleRotationIsForCorotatedElasticity) {
               HasSubstr("s.xml:4: region 'region1': formulation = singleRotation is for linearElasticMaterial"));
 }
 
-TEST(FormulationLanguage, ExpressionsInsideElementsNeedStandardOnes) {
+TEST(FormulationLanguage, ExpressionsGoWithEveryElement) {
   const std::string law = R"(<linearElasticMaterial youngModulus="1 + X" poissonRatio="0.3"/>)";
   EXPECT_EQ(faults(R"(<linearTet mesh="${b}"/>)", law), "");
-  EXPECT_THAT(faults(R"(<linearTet mesh="${b}" formulation="fbar"/>)", law),
-              HasSubstr("s.xml:4: region 'region1': a material with expressions in X, Y, Z varies inside elements"));
+  EXPECT_EQ(faults(R"(<linearTet mesh="${b}" formulation="fbar"/>)", law), "");
+  EXPECT_EQ(faults(R"(<quadraticTet mesh="${b}" formulation="mixed"/>)", law), "");
+  EXPECT_EQ(faults(R"(<quadraticTet mesh="${b}" formulation="singleRotation"/>)", law), "");
 }
 
 TEST(FormulationLanguage, PlaneStressIsAboutDisplacements) {
@@ -224,8 +225,11 @@ TEST(FormulationLanguage, WhatMaterialsTakeFromElsewhereIsReadBeforeAnythingRuns
   EXPECT_THAT(faults(Parts{.region = R"(<linearElasticMaterial youngModulus="1" poissonRatio="0" fields="E=E"/>)"}),
               HasSubstr("fields: 'E' is no attribute that takes a number"));
   EXPECT_THAT(
-      faults(Parts{.region = R"(<guccioneMaterial C="1" bf="1" bt="1" bfs="1" bulkModulus="9" fiber="X Y 1"/>)"}),
-      HasSubstr("fiber = 'X Y 1': a direction is three numbers, or the name of a cell field"));
+      faults(Parts{.region = R"(<guccioneMaterial C="1" bf="1" bt="1" bfs="1" bulkModulus="9" fiber="X t 1"/>)"}),
+      HasSubstr("s.xml:4: guccioneMaterial: fiber = 't' depends on t"));
+  EXPECT_THAT(faults(Parts{.region = R"(<polynomialMaterial terms="1 X 3" bulkModulus="9"/>)"}),
+              HasSubstr("the power X is no number"));
+  EXPECT_THAT(faults(Parts{.region = R"(<ogdenMaterial mu="1 +" alpha="2" bulkModulus="9"/>)"}), HasSubstr("s.xml:4"));
 }
 
 }  // namespace

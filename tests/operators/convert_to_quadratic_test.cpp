@@ -92,9 +92,13 @@ TEST(ConvertToQuadratic, ElementsThatWouldInvertKeepStraightEdges) {
             "6 of 6 mid nodes of the boundary stay on straight edges: bent ones would invert an element");
 }
 
-TEST(ConvertToQuadratic, RefusesAMeshWithoutTetrahedra) {
-  const Mesh triangles = to_mesh(box(Vec3::Zero(), Vec3::Ones()));
-  EXPECT_EQ(error_of(tag, {{"mesh", stored(triangles)}}),
+TEST(ConvertToQuadratic, TakesTrianglesAloneButProjectsTetrahedraOnly) {
+  const Surface cube = box(Vec3::Zero(), Vec3::Ones());
+  const Mesh triangles = to_mesh(cube);
+  const auto quadratic = output<Mesh>(run(tag, {{"mesh", stored(triangles)}}));
+  EXPECT_EQ(quadratic->count(CellKind::tri6), 12);
+  EXPECT_EQ(quadratic->point_count(), 8 + 18);  // corners and edges
+  EXPECT_EQ(error_of(tag, {{"mesh", stored(triangles)}, {"projectOnto", std::make_shared<const Surface>(cube)}}),
             "ConvertLinearToQuadraticTetrahedralMesh needs tetrahedra, but the mesh has 8 points, 12 tri3");
 }
 

@@ -104,11 +104,71 @@ TEST(Materials, MayBeExpressionsInThePlace) {
   const auto simulation = build_model(scene("1000*(1+Z)").record(language), listener, 1);
   ASSERT_TRUE(simulation.model.regions[0].point_law);
   const std::vector<Vec3> places{{0, 0, 0.5}, {3, 1, 2}};
-  const auto law = simulation.model.regions[0].point_law(places);
+  const auto law = simulation.model.regions[0].point_law(std::vector<int>{0}, places);
   EXPECT_NEAR(stress(*law, 1.01, 1, 1, 0)(0, 0), 0.4 * 1500 * 0.03, 1e-10);
   EXPECT_NEAR(stress(*law, 1.01, 1, 1, 7)(0, 0), 0.4 * 3000 * 0.03, 1e-10);
   EXPECT_THAT(message(language, scene("1000+t")), HasSubstr("depends on t"));
   EXPECT_THAT(message(language, scene("Z-1")), HasSubstr("youngModulus"));
+}
+
+TEST(Materials, TakeExpressionsInListsAndDirections) {
+  const Language language;
+  Listener listener;
+  const auto law_at = [&](const std::string& tag, const Attributes& attributes, const Vec3& X) {
+    const auto simulation = build_model(bar(language, tag, attributes).record(language), listener, 1);
+    const std::vector<int> elements{7};
+    return simulation.model.regions[0].point_law(elements, std::vector<Vec3>{{0, 0, 0}, X});
+  };
+  const auto same = [&](const std::string& tag, const Attributes& varying, const Attributes& there) {
+    const auto one = law_at(tag, varying, {0.5, 0.25, 2});
+    const auto simulation = build_model(bar(language, tag, there).record(language), listener, 1);
+    EXPECT_LT((stress(*one, 1.3, 1.2, 0.8, 1) - stress(*simulation.model.regions[0].law, 1.3, 1.2, 0.8, 0)).norm(),
+              1e-12)
+        << tag;
+    EXPECT_GT((stress(*one, 1.3, 1.2, 0.8, 1) - stress(*one, 1.3, 1.2, 0.8, 0)).norm(), 1e-2) << tag;
+  };
+  same("ogdenMaterial",
+       {{"mu", Formulas{Formula("1+Z"), 2.0}}, {"alpha", Formulas{2.0, Formula("4-Z")}}, {"bulkModulus", 50.0}},
+       {{"mu", Formulas{3.0, 2.0}}, {"alpha", Formulas{2.0, 2.0}}, {"bulkModulus", 50.0}});
+  same("reducedPolynomialMaterial", {{"c", Formulas{Formula("1+X"), Formula("Y")}}, {"bulkModulus", 50.0}},
+       {{"c", Formulas{1.5, 0.25}}, {"bulkModulus", 50.0}});
+  same("polynomialMaterial", {{"terms", Formulas{1.0, 0.0, Formula("1+Z")}}, {"bulkModulus", 50.0}},
+       {{"terms", Formulas{1.0, 0.0, 3.0}}, {"bulkModulus", 50.0}});
+  same("transverselyIsotropicMaterial", with(fibre_law, "fiber", std::string("-Y, X, 1 - Z/2")),
+       with(fibre_law, "fiber", std::string("-1 2 0")));
+  EXPECT_THAT(
+      message(language, bar(language, "transverselyIsotropicMaterial", with(fibre_law, "fiber", std::string("t 0 1")))),
+      HasSubstr("fiber = 't' depends on t"));
+}
+
+TEST(Materials, TakeExpressionsBesideFields) {
+  const Language language;
+  Listener listener;
+  Attributes attributes = with(fibre_law, "fiber", std::string("fibres"));
+  attributes["k1"] = Formula("100*(1+X)");
+  const Scene scene = bar(language, "transverselyIsotropicMaterial", attributes);
+  const auto simulation = build_model(scene.record(language), listener, 1);
+  const std::vector<int> elements{5, 6};  // fibres along z, then along x
+  const auto law = simulation.model.regions[0].point_law(elements, std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}});
+  const double l = 1.3, f = l * l - 1, fibre = 2 * f * std::exp(0.5 * f * f) * l;
+  EXPECT_NEAR(stress(*law, 1, 1, l, 0)(2, 2) - stress(*law, 1, 1, l, 1)(2, 2), 100 * fibre, 1e-9);
+  EXPECT_NEAR(stress(*law, l, 1, 1, 1)(0, 0) - stress(*law, l, 1, 1, 0)(0, 0), 300 * fibre, 1e-9);
+}
+
+TEST(Mass, MayVaryFromPlaceToPlace) {
+  const Language language;
+  Listener listener;
+  const auto density = [&](const Attributes& attributes) {
+    Scene scene = bar(language, "linearElasticMaterial", {{"youngModulus", 1.0}, {"poissonRatio", 0.25}});
+    scene.regions[0].children.push_back(language.tag("mass", "mass", attributes));
+    return build_model(scene.record(language), listener, 1).model.regions[0];
+  };
+  EXPECT_FALSE(density({{"massDensity", 3.0}}).density_at);
+  const fe::Region sloping = density({{"massDensity", Formula("1+Z")}});
+  ASSERT_TRUE(sloping.density_at);
+  EXPECT_EQ(sloping.density_at(4, {0, 0, 1.5}), 2.5);
+  EXPECT_EQ(density({{"fields", std::string("massDensity=E")}}).density_at(4, {0, 0, 1.5}), 1400);
+  EXPECT_THROW(density({{"massDensity", Formula("1+t")}}), Error);
 }
 
 TEST(Materials, RefuseFieldsThatDoNotFit) {

@@ -10,6 +10,7 @@ namespace msml::test {
 namespace {
 
 using simulation::build_model;
+using testing::HasSubstr;
 using Numbers = std::vector<double>;
 
 fe::Model build(const Language& language, const Scene& scene) {
@@ -65,6 +66,21 @@ TEST(SpringToPoint, PutsOneSpringAtEachNode) {
   EXPECT_EQ(springs[0].rest, 3);
   EXPECT_DOUBLE_EQ(springs[1].rest, std::sqrt(10.0));
   EXPECT_EQ(springs[1].second, -1);
+}
+
+TEST(SpringToPoint, TakesExpressionsInThePlaceOfTheNode) {
+  Attributes attributes{{"indices", index_set(nullptr, Indexed::nodes, {0, 2})},
+                        {"point", Numbers{0, 0, 3}},
+                        {"stiffness", Formula("5+X")},
+                        {"damping", Formula("2*X")},
+                        {"restLength", Formula("1+X/2")}};
+  const auto springs = build("springToPoint", attributes).steps[0].springs;
+  EXPECT_EQ(springs[0].stiffness, 5);
+  EXPECT_EQ(springs[1].stiffness, 6);
+  EXPECT_EQ(springs[1].damping, 2);
+  EXPECT_EQ(springs[1].rest, 1.5);
+  attributes["stiffness"] = Formula("5+t");
+  EXPECT_THAT(refusal("springToPoint", attributes), HasSubstr("stiffness = '5+t' depends on t"));
 }
 
 TEST(SpringMeshToFixed, PullsTheNearestNodesWithoutARestLength) {

@@ -79,6 +79,17 @@ TEST(ArcLength, FindsTheStateOfLoadControlBeforeTheLimitPoint) {
   EXPECT_LT((same.state.displacement - outcome.state.displacement).norm(), 1e-5 * same.state.displacement.norm());
 }
 
+// Where the path turns, a step in the direction of the tangent would pass the bound by far.
+TEST(ArcLength, StopsAtALoadBoundNearTheTurn) {
+  Model model = sphere(1, 0.499);
+  model.settings.load_steps = 1;
+  model.settings.arc_length = {.on = true, .steps = 40, .load = 1.2};
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_GE(outcome.state.load_factor, 1.2);
+  EXPECT_LT(outcome.state.load_factor, 1.2 * 1.0015);
+}
+
 TEST(ArcLength, RefusesMovedSupportsAndOtherIntegrators) {
   Model model = beam_model(1, CellKind::tet4, 0.3, Strain::corotated);
   model.settings.arc_length.on = true;

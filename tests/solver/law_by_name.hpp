@@ -23,7 +23,7 @@ inline std::shared_ptr<const Law> law_by_name(const std::string& tag,
     }
     for (const auto& [name, value] : attributes) {
       const auto slot = static_cast<std::size_t>(material.find(name));
-      record.values.at(slot) = value;
+      record.values.at(slot) = convert(value, material.slots()[slot].type);
       record.given.at(slot) = true;
     }
     return material.make(record);

@@ -121,11 +121,14 @@ TEST(EveryMaterial, ApproachesHookesLawForSmallStrain) {
   for (const auto& [name, law] : all_laws()) {
     if (!law->isotropic()) continue;
     const double mu = law->shear_modulus(), nu = law->poisson_ratio(), lambda = 2 * mu * nu / (1 - 2 * nu);
-    const double size = 1e-6;
-    const Mat3 H = size * random.matrix(), e = 0.5 * (H + H.transpose());
-    const Mat3 expected = 2 * mu * e + lambda * e.trace() * Mat3::Identity();
-    // Second order in the strain: 1e-12, times a few.
-    EXPECT_LT((evaluate(*law, Mat3::Identity() + H).P - expected).norm(), 20 * size * size * (mu + lambda)) << name;
+    const Mat3 direction = random.matrix();
+    const auto error = [&](double size) {
+      const Mat3 H = size * direction, e = 0.5 * (H + H.transpose());
+      const Mat3 expected = 2 * mu * e + lambda * e.trace() * Mat3::Identity();
+      return (evaluate(*law, Mat3::Identity() + H).P - expected).norm();
+    };
+    // Of second order in the strain, with a third of 1e-4 of it beside; 1e-15 is round-off.
+    EXPECT_LT(error(5e-5), 0.251 * error(1e-4) + 1e-15 * (mu + lambda)) << name;
   }
 }
 
@@ -142,6 +145,22 @@ TEST(LinearElastic, RefusesValuesOutsideTheirRange) {
   EXPECT_THROW(make_linear_elastic({.poisson_ratio = 0.5}), Error);
   EXPECT_THROW(make_linear_elastic({.poisson_ratio = -1}), Error);
   EXPECT_NO_THROW(make_linear_elastic({.poisson_ratio = 0.4999}));
+}
+
+// w(s, y, z) is quadratic in s, so that what inversion = "clamped" would continue it by is the law itself.
+TEST(LinearElastic, IsItsOwnContinuationBelowAStretch) {
+  const double c = 0.3, h = 1e-3, young = 1000, nu = 0.3, M = young * (1 - nu) / ((1 + nu) * (1 - 2 * nu));
+  const auto law = law_of("linearElasticMaterial", {{"strain", std::string("corotated")},
+                                                    {"inversion", std::string("clamped")},
+                                                    {"youngModulus", young},
+                                                    {"poissonRatio", nu}});
+  const auto w = [&](double s) { return evaluate(*law, Vec3(1.1, 0.9, s).asDiagonal()).energy; };
+  const double slope = (w(c + h) - w(c - h)) / (2 * h);
+  for (const double s : {0.1, -0.2, -0.7})
+    EXPECT_NEAR(w(s), w(c) + slope * (s - c) + 0.5 * M * (s - c) * (s - c), 1e-8 * M) << s;
+  EXPECT_THROW(
+      law_of("linearElasticMaterial", {{"strain", std::string("small")}, {"inversion", std::string("clamped")}}),
+      Error);
 }
 
 // Simple shear F = I + g e1 e2^T. U of the plane part is by hand [[2, g], [g, 2 + g^2]] / sqrt(4 + g^2).

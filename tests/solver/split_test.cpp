@@ -19,7 +19,7 @@ TEST(SplitLaws, AddUpToTheWhole) {
     ++checked;
     for (const Mat3& F : {Mat3(Mat3::Identity() + 0.1 * random.matrix()), random.stretched(2, 1.5, 0.4)}) {
       const Point whole = evaluate(*law, F), rest = evaluate(*split->rest, F), g = evaluate(*split->constraint, F);
-      const double m = split->modulus, size = law->shear_modulus() + m;
+      const double m = split->modulus[0], size = law->shear_modulus() + m;
       EXPECT_NEAR(whole.energy, rest.energy + m / 2 * g.energy * g.energy, 1e-13 * size) << name;
       EXPECT_LT((whole.P - rest.P - m * g.energy * g.P).norm(), 1e-13 * size) << name;
       const Eigen::Matrix<double, 3, 3, Eigen::RowMajor> slope = g.P;

@@ -138,7 +138,7 @@ inline void draw_body(Draw& draw, Drawn& drawn) {
   if (quadratic && family == Family::corotated && draw.chance(0.5)) {
     drawn.model.formulation = Formulation::single_rotation;
     drawn.words += "single rotation, ";
-  } else if (split && split->modulus > 0) {
+  } else if (split && split->modulus[0] > 0) {
     drawn.model.formulation = quadratic ? Formulation::mixed : Formulation::fbar;
     drawn.words += quadratic ? "mixed, " : "fbar, ";
   }

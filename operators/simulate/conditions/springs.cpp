@@ -7,20 +7,26 @@ namespace msml::simulation {
 namespace {
 
 struct SpringKeys {
-  Key<double> stiffness, damping, rest;
+  Key<Formula> stiffness, damping, rest;
 };
 
 SpringKeys add_spring(Description& tag) {
   return {
-      tag.parameter("stiffness", {.unit = "force/length", .range = positive(), .doc = "tension per length, a number"}),
-      tag.parameter("damping", {.unit = "force time/length",
-                                .range = nonnegative(),
-                                .fallback = 0.0,
-                                .doc = "force per rate of the length; in all directions where restLength is 0"}),
-      tag.parameter("restLength", {.unit = "length",
-                                   .range = nonnegative(),
-                                   .optional = true,
-                                   .doc = "where it is free of force; absent: the distance in the reference mesh"})};
+      tag.parameter<Formula>("stiffness",
+                             {.unit = "force/length",
+                              .range = positive(),
+                              .doc = "tension per length: a number, or an expression in X, Y, Z of its first end"}),
+      tag.parameter<Formula>(
+          "damping", {.unit = "force time/length",
+                      .range = nonnegative(),
+                      .fallback = 0.0,
+                      .doc = "force per rate of the length; in all directions where restLength is 0; expressions too"}),
+      tag.parameter<Formula>(
+          "restLength",
+          {.unit = "length",
+           .range = nonnegative(),
+           .optional = true,
+           .doc = "where it is free of force; absent: the distance in the reference mesh; expressions too"})};
 }
 
 Key<std::string> add_step(Description& tag) {
@@ -32,17 +38,25 @@ Vec3 point_of(const std::vector<double>& numbers, std::size_t i = 0) {
   return Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
 }
 
+double value_at(const Record& record, Key<Formula> key, const Vec3& X) {
+  const Function f = function(record, key);
+  if (f.of_time())
+    refuse(record, fmt::format("{} = '{}' depends on t; here X, Y and Z may stand",
+                               record.description->slots()[static_cast<std::size_t>(key.slot)].name, record[key].text));
+  return f(X, 0);
+}
+
 fe::Spring spring_of(const Record& record, const SpringKeys& keys, int first, int second, const Vec3& point,
                      const Mesh& mesh) {
   const Vec3 end = second < 0 ? point : Vec3(mesh.points.row(second).transpose());
-  const double distance = (end - mesh.points.row(first).transpose()).norm();
+  const Vec3 start = mesh.points.row(first).transpose();
   return {.name = label(record),
           .first = first,
           .second = second,
           .point = point,
-          .stiffness = record[keys.stiffness],
-          .damping = record[keys.damping],
-          .rest = record.has(keys.rest) ? record[keys.rest] : distance};
+          .stiffness = value_at(record, keys.stiffness, start),
+          .damping = value_at(record, keys.damping, start),
+          .rest = record.has(keys.rest) ? value_at(record, keys.rest, start) : (end - start).norm()};
 }
 
 int node_of(const Record& record, Key<Integer> key, const Body& body) {
@@ -108,11 +122,15 @@ ConditionFactory spring_to_point() {
 
 ConditionFactory spring_mesh_to_fixed() {
   ConditionFactory tag("springMeshToFixed", "constraint", "Springs from points of the mesh to points in space.");
-  const auto stiffness =
-      tag.parameter("stiffness", {.unit = "force/length", .range = positive(), .doc = "force per distance"});
-  const auto damping = tag.parameter(
-      "rayleighStiffnes",
-      {.unit = "time", .range = nonnegative(), .fallback = 0.0, .doc = "damping over stiffness (spelled so in MSML)"});
+  const auto stiffness = tag.parameter<Formula>(
+      "stiffness", {.unit = "force/length",
+                    .range = positive(),
+                    .doc = "force per distance: a number, or an expression in X, Y, Z of the node"});
+  const auto damping = tag.parameter<Formula>("rayleighStiffnes",
+                                              {.unit = "time",
+                                               .range = nonnegative(),
+                                               .fallback = 0.0,
+                                               .doc = "damping over stiffness (spelled so in MSML); expressions too"});
   const auto fixed = tag.parameter<std::vector<double>>(
       "fixedPoints", {.unit = "length", .multiple_of = 3, .doc = "points in space, x y z each"});
   const auto moving = tag.parameter<std::vector<double>>(
@@ -128,12 +146,16 @@ ConditionFactory spring_mesh_to_fixed() {
         refuse(record, fmt::format("movingPoints has {} points, but fixedPoints {}; each spring needs one of both",
                                    from.size() / 3, to.size() / 3));
       std::vector<fe::Spring> springs;
-      for (std::size_t i = 0; 3 * i < from.size(); ++i)
+      for (std::size_t i = 0; 3 * i < from.size(); ++i) {
+        const int node = nearest_node(record, point_of(from, i), body);
+        const Vec3 X = body.mesh->points.row(node).transpose();
+        const double k = value_at(record, stiffness, X);
         springs.push_back({.name = label(record),
-                           .first = nearest_node(record, point_of(from, i), body),
+                           .first = node,
                            .point = point_of(to, i),
-                           .stiffness = record[stiffness],
-                           .damping = record[damping] * record[stiffness]});
+                           .stiffness = k,
+                           .damping = value_at(record, damping, X) * k});
+      }
       return {springs};
     };
   });

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Works out attributes that are expressions or come from cell fields.
+#include "operators/simulate/varying_record.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "operators/simulate/records.hpp"
+#include "solver/materials/fibres.hpp"
+
+namespace msml::simulation {
+namespace {
+
+const Field& field_of(const Record& record, const std::string& attribute, const std::string& name, const Mesh& mesh,
+                      int components) {
+  std::string known;
+  for (const Field& field : mesh.cell_fields) {
+    if (field.name == name && field.components == components) return field;
+    if (field.name == name)
+      refuse(record, fmt::format("{} is taken from the cell field '{}', which has {} instead of {}", attribute, name,
+                                 counted(field.components, "component"), components));
+    known += (known.empty() ? "" : ", ") + field.name;
+  }
+  refuse(record, fmt::format("{} = '{}' is no cell field of the mesh{}", attribute, name,
+                             known.empty() ? ", which has none" : "; it has " + known));
+}
+
+/// An attribute and the name of the cell field that it comes from.
+struct Named {
+  std::size_t slot;
+  std::string field;
+};
+
+/// The attribute `fields`: "youngModulus=E mu=stiffness".
+std::vector<Named> named_numbers(const Record& record) {
+  std::vector<Named> named;
+  for (const std::string& part : list_parts(text_of(record, "fields"))) {
+    const std::size_t equals = part.find('=');
+    if (equals == std::string::npos || equals + 1 == part.size())
+      refuse(record, fmt::format("fields: '{}' is no pair attribute=field", part));
+    const std::string attribute = part.substr(0, equals);
+    const int slot = record.description->find(attribute);
+    if (slot < 0 || record.description->slots()[static_cast<std::size_t>(slot)].type != Type::formula)
+      refuse(record, fmt::format("fields: '{}' is no attribute that takes a number", attribute));
+    named.push_back({static_cast<std::size_t>(slot), part.substr(equals + 1)});
+  }
+  return named;
+}
+
+/// Three expressions, at least one of them of the place or of time; empty for anything else, such as a field's name.
+Formulas direction_formulas(const std::string& text) {
+  Formulas parts;
+  bool varies = false;
+  for (const std::string& part : expression_parts(text)) {
+    const FormulaFacts facts = examine(part);
+    if (!facts.problem.empty()) return {};
+    varies = varies || facts.of_position || facts.of_time;
+    parts.push_back(facts.of_position || facts.of_time ? Formula(part) : Formula(facts.value));
+  }
+  return varies && parts.size() == 3 ? parts : Formulas{};
+}
+
+/// The expressions of an attribute; empty where it is something else.
+Formulas formulas_of(const Slot& slot, const Value& value) {
+  if (const auto* one = std::get_if<Formula>(&value)) return {*one};
+  if (const auto* list = std::get_if<Formulas>(&value)) return *list;
+  const auto* text = std::get_if<std::string>(&value);
+  return text != nullptr && slot.unit == "direction" ? direction_formulas(*text) : Formulas{};
+}
+
+std::string direction_text(double x, double y, double z) { return fmt::format("{} {} {}", x, y, z); }
+
+}  // namespace
+
+void VaryingRecord::check(const Record& record) {
+  named_numbers(record);
+  expressions_of(record);
+}
+
+std::vector<VaryingRecord::Expressions> VaryingRecord::expressions_of(const Record& record) {
+  std::vector<Expressions> found;
+  const std::vector<Slot>& slots = record.description->slots();
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    Expressions all{s, {}};
+    bool varies = false;
+    for (const Formula& formula : formulas_of(slots[s], record.values[s])) {
+      const Function& f = all.parts.emplace_back(formula, slots[s].name, slots[s].range, record.where);
+      if (f.of_time())
+        refuse(record, fmt::format("{} = '{}' depends on t; here X, Y and Z may stand", slots[s].name, formula.text));
+      varies = varies || !f.constant();
+    }
+    if (varies) found.push_back(std::move(all));
+  }
+  return found;
+}
+
+VaryingRecord::VaryingRecord(const Record& record, const Body& body, const std::vector<int>& elements)
+    : record_(record), mesh_(body.mesh), expressions_(expressions_of(record)) {
+  find_fields();
+  check_fields(elements);
+}
+
+void VaryingRecord::find_fields() {
+  const std::vector<Slot>& slots = record_.description->slots();
+  for (std::size_t s = 0; s < slots.size(); ++s) {
+    const auto* text = std::get_if<std::string>(&record_.values[s]);
+    if (slots[s].unit == "direction" && text != nullptr && fe::direction_numbers(*text).empty() &&
+        direction_formulas(*text).empty())
+      fields_.push_back({s, &field_of(record_, slots[s].name, *text, *mesh_, 3)});
+  }
+  for (const auto& [slot, field] : named_numbers(record_))
+    fields_.push_back({slot, &field_of(record_, slots[slot].name, field, *mesh_, 1)});
+}
+
+void VaryingRecord::check_fields(const std::vector<int>& elements) const {
+  for (const auto& [slot, field] : fields_) {
+    const Slot& described = record_.description->slots()[slot];
+    for (const int e : elements) {
+      const double* v = field->values.data() + static_cast<std::size_t>(e * field->components);
+      const auto at = [&] { return fmt::format("in element {} at {}", e, place(centroid(*mesh_, e))); };
+      if (field->components == 3) {
+        const double length = std::hypot(v[0], v[1], v[2]);
+        if (!(length > 0) || !std::isfinite(length))
+          refuse(record_, fmt::format("{}: the field '{}' holds ({:g}, {:g}, {:g}) {}, which is no direction",
+                                      described.name, field->name, v[0], v[1], v[2], at()));
+      } else if (!described.range.contains(v[0])) {
+        refuse(record_, fmt::format("{}: the field '{}' holds {:g} {}, which is not {}", described.name, field->name,
+                                    v[0], at(), described.range.str()));
+      }
+    }
+  }
+}
+
+void VaryingRecord::put(const Source& source, int element, Record& record) const {
+  const double* v = source.field->values.data() + static_cast<std::size_t>(element * source.field->components);
+  if (source.field->components == 3)
+    record.values[source.slot] = direction_text(v[0], v[1], v[2]);
+  else
+    record.values[source.slot] = Formula(v[0]);
+}
+
+Record VaryingRecord::at(int element, const Vec3& X) const {
+  Record record = record_;
+  for (const auto& [slot, parts] : expressions_) {
+    Value& value = record.values[slot];
+    if (std::holds_alternative<Formula>(value)) {
+      value = Formula(parts[0](X, 0));
+    } else if (auto* list = std::get_if<Formulas>(&value)) {
+      for (std::size_t i = 0; i < parts.size(); ++i) (*list)[i] = Formula(parts[i](X, 0));
+    } else {
+      value = direction_text(parts[0](X, 0), parts[1](X, 0), parts[2](X, 0));
+    }
+  }
+  for (const Source& source : fields_) put(source, element, record);
+  return record;
+}
+
+}  // namespace msml::simulation
