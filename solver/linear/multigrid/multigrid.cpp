@@ -35,7 +35,6 @@ void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, 
 bool Multigrid::set_fine(const FreeBlocks& A) {
   const std::size_t size = 3 * at(A.view().rows()) + 8;
   for (auto* v : {&fine_.b, &fine_.x, &fine_.r}) v->assign(size, 0.0f);
-  fine_.level.degree = degree();
   return fine_.level.set(A);
 }
 
@@ -59,7 +58,6 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
-  grid.level.degree = degree();
   grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
   const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
   const std::size_t size = B * at(grid.matrix.sparsity.rows()) + 8;

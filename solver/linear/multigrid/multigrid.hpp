@@ -40,8 +40,6 @@ class Multigrid {
     std::vector<float> b, x, r;
     bool solved = false;  ///< by coarsest_, instead of smoothing
   };
-  /// Of the smoothers. Where the volume hardly changes the coarse grids lock and leave more to them.
-  int degree() const { return geometry_.poisson_ratio > 0.4 ? 4 : 2; }
   bool set_matrices(const FreeBlocks& A);
   bool set_groups(Modes& modes);
   bool set_fine(const FreeBlocks& A);
