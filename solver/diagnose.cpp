@@ -28,7 +28,10 @@ std::string advice(const Run& run, const IncrementResult& result) {
     case Stop::linear_solver_limit:
       return "try linearSolver=\"direct\", another preconditioner, a better mesh or poissonRatio further from 0.5";
     case Stop::step_too_large:
-      return "take dt as small as that, or adaptiveStep=\"true\"";
+      return loaded_in_parts ? "take more loadSteps, or adaptiveStep=\"true\""
+                             : "take dt as small as that, or adaptiveStep=\"true\"";
+    case Stop::bad_element:
+      return "improve the mesh there: without slivers, or finer";
     case Stop::collapsed:
       return "the body rests with a part turned inside out or crushed to nothing, a trap of the energy: start from a "
              "slightly changed state, take a law that pushes back (neoHookeanMaterial form=\"stable\", or "

@@ -42,6 +42,7 @@ IncrementResult Newton::walk(const Increment& increment) {
     }
   }
   tangent_current_ = false;
+  result.walked = share;
   walked_ += result.stop == Stop::converged;
   return result;
 }

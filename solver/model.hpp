@@ -346,9 +346,10 @@ enum class Stop {
   singular,
   interrupted,
   out_of_memory,
-  collapsed,      ///< equilibrium with det F <= 0 in a law that survives inversion
-  unstable_step,  ///< an explicit method with too large a time step
-  step_too_large  ///< an implicit time step that fails where a shorter one from the same state does not
+  collapsed,       ///< equilibrium with det F <= 0 in a law that survives inversion
+  unstable_step,   ///< an explicit method with too large a time step
+  step_too_large,  ///< a step of time or loads that fails where a shorter one from the same state does not
+  bad_element      ///< an element that is nearly flat at rest keeps the iteration from its end
 };
 const char* name(Stop stop);
 

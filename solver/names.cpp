@@ -29,7 +29,9 @@ const char* name(Stop stop) {
     case Stop::unstable_step:
       return "unstable time step";
     case Stop::step_too_large:
-      return "time step too large";
+      return "step too large";
+    case Stop::bad_element:
+      return "bad element";
   }
   return "unknown";
 }

@@ -237,6 +237,7 @@ IncrementResult Newton::run(const Increment& increment) {
     definite_taken_ = false;
     const LinearStatus status = direction(increment, u, moving ? jump : Vector(), residual, step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
+    result.definite += definite_taken_;
     tangent_current_ = insist_definite_ = false;
     round_off_ = round_off(u + jump * moving + step);
     if (limit == 1) return u += jump + step, result;
@@ -245,6 +246,7 @@ IncrementResult Newton::run(const Increment& increment) {
       take_jump(increment, jump, step, u);
     else
       share = line_search(increment, step, residual, u);
+    result.stunted += share < 0.125;
     if (share == 0) {
       if (definite_taken_ || !energetic_) return result.stop = Stop::diverged, result;
       insist_definite_ = true;

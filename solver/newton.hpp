@@ -29,6 +29,9 @@ struct IncrementResult {
   int worst_element = -1;         ///< cell id: the smallest det F
   double worst_J = 0;
   int worst_node = -1;  ///< mesh point with the largest residual
+  int definite = 0;     ///< iterations that took the semidefinite tangent
+  int stunted = 0;      ///< iterations that went less than an eighth of Newton's step
+  double walked = 0;    ///< where pieces of the increment were tried: the share that was reached
 };
 
 /// Work space and statistics of all increments of a run.
@@ -73,6 +76,7 @@ class Newton {
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
   const BlockMatrix& tangent() const { return tangent_; }
   const BlockMatrix* followers() const { return followers_.get(); }  ///< null without follower pressure
+  int iterations() const { return iterations_; }                     ///< so far
   /// Adds to the counts of iterations and linear solves.
   void count(int iterations, int solves) { iterations_ += iterations, solves_ += solves; }
   LinearSystem& linear() { return *linear_; }

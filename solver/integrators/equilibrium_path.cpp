@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibrium along a path of loads, in pieces that halve where Newton's method fails.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -35,6 +37,23 @@ void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) 
   run.account(before);
 }
 
+/// Halves the way from the present equilibrium, at a share of the path, to one that fails, so that what is wrong there
+/// shows: the present state becomes the last equilibrium that is found. Returns the smallest share that fails. Takes
+/// about as many iterations as the run before, or a hundred.
+double approach(Run& run, const EquilibriumPath& path, double from, double fails) {
+  constexpr int halvings = 20;
+  const int most = std::max(100, 2 * run.newton.iterations());
+  for (int k = 0; k < halvings && run.newton.iterations() < most; ++k) {
+    const double middle = 0.5 * (run.now.load_factor + fails);
+    const IncrementResult result = try_piece(run, path, from, middle, false);
+    if (result.stop == Stop::converged)
+      run.now.u = result.u, run.now.load_factor = middle;
+    else
+      fails = middle;
+  }
+  return fails;
+}
+
 /// Adaptive pieces are no longer than half the shortest relaxation time, as a share of the path.
 double longest_piece(const Run& run, const EquilibriumPath& path, double whole, double smallest) {
   double tau = std::numeric_limits<double>::infinity();
@@ -48,6 +67,17 @@ double growth(const IncrementResult& result, bool adaptive) {
   const std::size_t iterations = result.residuals.size() - 1;
   if (!adaptive || iterations <= 4) return 2;
   return iterations <= 8 ? 1 : 0.6;
+}
+
+/// Why a piece failed that could not be halved any more; "" if that is not found.
+std::string cause_of(Run& run, const EquilibriumPath& path, double from, double share, IncrementResult& result) {
+  if (result.stop != Stop::newton_limit && result.stop != Stop::diverged) return "";
+  run.now.load_factor = from;
+  const double fails = run.model.settings.newton_iterations > 1 ? approach(run, path, from, share) : share;
+  if (std::string found = find_cause(run, path, fails, result); !found.empty()) return found;
+  if (fails < share) return cause_of_iterations(run, result);
+  result.stop = Stop::step_too_large;
+  return fmt::format("in shorter pieces the way is found, to {:.6g} of the loads", run.now.load_factor);
 }
 
 }  // namespace
@@ -83,7 +113,7 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
     run.newton.forget();
     const bool hopeless = result.stop == Stop::singular || result.stop == Stop::out_of_memory;
     if (hopeless || run.model.settings.newton_iterations == 1 || last_resort) {
-      const std::string evidence = find_cause(run, path, share, result);
+      const std::string evidence = cause_of(run, path, from, share, result);
       run.now = before;
       explain(run, result, share, evidence);
       return false;

@@ -69,11 +69,26 @@ struct Explicit {
     BlockMatrix K(C.pattern);
     run.newton.stiffness(run.now.u, loads, K);
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
-    if (!std::isfinite(largest)) return true;  // what stopped the run says more
+    if (!std::isfinite(largest)) return left > 0 || run.now.increment == 0 || blown_up(step);
     const double limit = limit_of(K, largest, fixed);
     run.outcome.stable_step = std::min(run.outcome.stable_step, limit);
     if (step.dt <= limit * (1 + 1e-6) || (left > 0 && grows_little(K, fixed, step.dt, left))) return true;
     refuse(step, limit, std::sqrt(largest));
+    return false;
+  }
+
+  /// A state that once was sound has grown until its stiffness is beyond numbers. Always false: that is too large a
+  /// step.
+  bool blown_up(const Step& step) {
+    Outcome& outcome = run.outcome;
+    outcome.stop = Stop::unstable_step;
+    outcome.diagnosis = fmt::format(
+        "step {} '{}' stopped at time {:g}: within {} time steps the motion grew beyond all numbers, as it does where "
+        "dt "
+        "= {:g} is above the stable step of {} ({:.4g} when last looked at; it falls where a body stiffens); take a "
+        "smaller dt (and more iterations), or an implicit timeIntegration",
+        run.now.step + 1, step.name, run.now.time, run.now.increment, step.dt, name(run.model.settings.integrator),
+        outcome.stable_step);
     return false;
   }
 

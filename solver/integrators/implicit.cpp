@@ -173,13 +173,14 @@ double error_of(const Stage& stage, const Trial& trial, double h) {
 std::string find_cause(Stage& stage, const Forces& start_forces, bool damped, IncrementResult& result) {
   Run& run = stage.run;
   if (result.stop != Stop::newton_limit && result.stop != Stop::diverged) return "";
+  if (stage.run.model.settings.adaptive_step) return cause_of_iterations(stage.run, result);
   for (double h = stage.step.dt / 4; h > stage.step.dt / 5000; h /= 4) {
     run.newton.go_back(start_forces);
     if (try_step(stage, run.now.time + h, start_forces, damped).result.stop != Stop::converged) continue;
     result.stop = Stop::step_too_large;
     return fmt::format("from the same state a step of {:.3g} is solved", h);
   }
-  return "";
+  return cause_of_iterations(stage.run, result);
 }
 
 /// To the next reported state; false if that failed, and the outcome is explained.
@@ -203,7 +204,7 @@ bool advance(Stage& stage, double target) {
     const double factor = solved ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1 / order), 0.2, 2.0) : 0.5;
     const bool hopeless = trial.result.stop == Stop::singular || trial.result.stop == Stop::out_of_memory;
     if (!solved && (!settings.adaptive_step || hopeless || taken / 2 < smallest)) {
-      const std::string evidence = settings.adaptive_step ? "" : find_cause(stage, start_forces, damped, trial.result);
+      const std::string evidence = find_cause(stage, start_forces, damped, trial.result);
       return explain(run, trial.result, -1, evidence), false;
     }
     if (!solved || (error > 1 && taken * factor >= smallest)) {

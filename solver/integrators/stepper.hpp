@@ -115,5 +115,10 @@ void explain(Run& run, const IncrementResult& result, double share, const std::s
 /// returns what speaks for it. inverted_element: where it ended, an element is; indefinite_tangent: the lowest
 /// eigenvalue of the tangent falls towards zero along the path and is below it beyond. "" and no change otherwise.
 std::string find_cause(Run& run, const EquilibriumPath& path, double share, IncrementResult& result);
+/// The same for an increment of which no more is known than its iterations. bad_element: what is left is largest at an
+/// element that is nearly flat. step_too_large: a part of what acts at once was reached. indefinite_tangent: half of
+/// the iterations or more met an indefinite tangent, or went a small part of their step only: the residual r has a
+/// minimum there that is no equilibrium, and K r = 0 says that the tangent is singular.
+std::string cause_of_iterations(const Run& run, IncrementResult& result);
 
 }  // namespace msml::fe

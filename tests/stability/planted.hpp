@@ -117,7 +117,7 @@ inline Planted plant_long_step(Draw& draw, Model model, bool wrong) {
   model.settings.integrator = Integrator::newmark;
   model.settings.newton_iterations = 1;
   model.steps[0].dt = wrong ? draw.number(0.5, 1) : 1e-5;
-  return {"time step too large", "time step too large", {Stop::step_too_large}, model};
+  return {"step too large", "step too large", {Stop::step_too_large}, model};
 }
 
 /// Nearly all of the body is in one point at the start: a local minimum of the cubic law, but not of the stable one.
