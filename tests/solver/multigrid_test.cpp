@@ -33,17 +33,30 @@ double difference(const State& a, const State& b) {
   return (a.displacement - b.displacement).cwiseAbs().maxCoeff() / a.displacement.cwiseAbs().maxCoeff();
 }
 
-// The error may be larger than the residual by the condition number of the beam, about 1e5 here, and rarely is.
+// The error may be larger than the residual by the condition number of the beam, about 1e5 here, and rarely is. Near
+// incompressibility the matrix is ten times as large and so is the round-off in a residual: the tolerance leaves room.
 TEST(Multigrid, AgreesWithAFactorisation) {
-  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
-    const Model model = beam_model(3, kind, 0.3, Strain::small);
-    EXPECT_LT(difference(run(solved_by(model, LinearSolver::direct, 1e-12)).state,
-                         run(solved_by(model, LinearSolver::cg, 1e-10)).state),
-              1e-8);
-  }
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
+    for (const double poisson_ratio : {0.3, 0.49}) {
+      const double tolerance = poisson_ratio > 0.4 ? 1e-9 : 1e-10;
+      const Model model = beam_model(3, kind, poisson_ratio, Strain::small);
+      EXPECT_LT(difference(run(solved_by(model, LinearSolver::direct, 1e-12)).state,
+                           run(solved_by(model, LinearSolver::cg, tolerance)).state),
+                100 * tolerance);
+    }
 }
 
-// With a smoother alone the iterations double where the elements halve.
+// With a smoother alone the iterations double where the elements halve, and where the volume is hardly allowed to
+// change they grow with the root of lambda / mu: to five times those of nu = 0.3.
+TEST(Multigrid, NeedsAtMostFortyIterationsOnAnyMeshUpToNearIncompressibility) {
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10})
+    for (const double poisson_ratio : {0.3, 0.45, 0.49})
+      for (const int n : {kind == CellKind::tet4 ? 6 : 4, kind == CellKind::tet4 ? 10 : 6})
+        EXPECT_LE(
+            run(solved_by(beam_model(n, kind, poisson_ratio, Strain::small), LinearSolver::cg, 1e-8)).cg_iterations, 40)
+            << (kind == CellKind::tet4 ? "tet4" : "tet10") << ", n = " << n << ", nu = " << poisson_ratio;
+}
+
 TEST(Multigrid, IterationsDoNotGrowWithTheMesh) {
   for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
     std::vector<long> iterations;
@@ -51,7 +64,6 @@ TEST(Multigrid, IterationsDoNotGrowWithTheMesh) {
       iterations.push_back(
           run(solved_by(beam_model(n, kind, 0.3, Strain::small), LinearSolver::cg, 1e-8)).cg_iterations);
     EXPECT_LE(iterations[1], iterations[0] + 6);
-    EXPECT_LE(iterations[1], 40);
   }
 }
 
@@ -170,18 +182,52 @@ TEST(Multigrid, TurnsWithTheBody) {
   EXPECT_NEAR(iterations_turned(2.5, *system, equations), at_rest, 1);
 }
 
+/// The stiffness of a beam at rest and its supports.
+struct Stiffness {
+  Stiffness(int n, CellKind kind, double poisson_ratio)
+      : model(beam_model(n, kind, poisson_ratio, Strain::small)), equations(model), A(equations.elements().pattern()) {
+    const Vector zero = Vector::Zero(equations.size());
+    Forces forces;
+    equations.evaluate(zero, {}, Want::tangent, forces, &A);
+    fixed = make_supports(model.steps[0], equations.numbering(), zero).fixed;
+  }
+  Model model;
+  Equations equations;
+  BlockMatrix A;
+  Mask fixed;
+};
+
+double inner(const std::vector<float>& a, const std::vector<float>& b, std::size_t count) {
+  double sum = 0;
+  for (std::size_t k = 0; k < count; ++k) sum += static_cast<double>(a[k]) * b[k];
+  return sum;
+}
+
+// Conjugate gradients want a symmetric preconditioner: a V b = b V a, to single precision.
+TEST(Multigrid, HasASymmetricCycle) {
+  for (const double poisson_ratio : {0.3, 0.49})
+    for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+      const Stiffness beam(kind == CellKind::tet4 ? 9 : 4, kind, poisson_ratio);
+      Multigrid grids(beam.equations.geometry());
+      ASSERT_EQ(grids.set(beam.A, beam.fixed), LinearStatus::done);
+      const std::size_t count = beam.fixed.size();
+      std::vector<float> a = some_numbers(static_cast<int>(count), beam.fixed), b = a, Va(a.size()), Vb(a.size());
+      for (std::size_t k = 0; k < count; ++k) b[k] *= static_cast<float>(std::cos(0.1 * static_cast<double>(k)));
+      grids.cycle(a, Va);
+      grids.cycle(b, Vb);
+      EXPECT_NEAR(inner(a, Vb, count), inner(b, Va, count),
+                  1e-4 * std::sqrt(inner(a, Va, count) * inner(b, Vb, count)));
+    }
+}
+
 // The second set-up keeps the grids. All steps are linear in the matrix: half the solution of the same residual.
 TEST(Multigrid, IsSetUpAgainForAnotherMatrix) {
   for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
-    const Model model = beam_model(kind == CellKind::tet4 ? 9 : 6, kind, 0.3, Strain::small);
-    const Equations equations(model);
-    const Vector zero = Vector::Zero(equations.size());
-    BlockMatrix A(equations.elements().pattern());
-    Forces forces;
-    equations.evaluate(zero, {}, Want::tangent, forces, &A);
-    const Mask fixed = make_supports(model.steps[0], equations.numbering(), zero).fixed;
-    Multigrid grids(equations.geometry());
-    std::vector<float> r(static_cast<std::size_t>(equations.size()) + 8, 1.0f), once(r.size()), again(r.size());
+    Stiffness beam(kind == CellKind::tet4 ? 9 : 6, kind, kind == CellKind::tet4 ? 0.3 : 0.49);
+    const Mask& fixed = beam.fixed;
+    BlockMatrix& A = beam.A;
+    Multigrid grids(beam.equations.geometry());
+    std::vector<float> r(fixed.size() + 8, 1.0f), once(r.size()), again(r.size());
     for (std::size_t k = 0; k < fixed.size(); ++k)
       if (fixed[k]) r[k] = 0;
     ASSERT_EQ(grids.set(A, fixed), LinearStatus::done);

@@ -146,9 +146,9 @@ Blocks<float, B, 6> prolongation(const Matrix& A, const std::vector<double>& inv
 namespace {
 
 /// coarse += the share of the rows [first, last) of A P in P^T (A P), whose blocks lie at `rows`.
-template <int B>
-void add_strip(const Blocks<float, 6, B>& P_transposed, const Sparsity& AP, int first, int last,
-               const std::vector<double>& rows, Places& places, Blocks<double, 6, 6>& coarse) {
+template <int B, int C>
+void add_strip(const Blocks<float, C, B>& P_transposed, const Sparsity& AP, int first, int last,
+               const std::vector<double>& rows, Places& places, Blocks<double, C, C>& coarse) {
   const int base = AP.offsets[at(first)];
   const Sparsity& PT = P_transposed.sparsity;
   for_rows(PT.rows(), 64, [&](int c) {
@@ -158,14 +158,14 @@ void add_strip(const Blocks<float, 6, B>& P_transposed, const Sparsity& AP, int 
     std::vector<int>& place = places.local();
     note_places(coarse.sparsity, c, coarse.sparsity.offsets[at(c)], place);
     for (auto n = from; n != to; ++n) {
-      double a[6 * B];
+      double a[C * B];
       P_transposed.copy(static_cast<int>(n - PT.columns.begin()), c, a);
       for (int q = AP.offsets[at(*n)]; q < AP.offsets[at(*n + 1)]; ++q) {
-        const double* b = &rows[6 * B * at(q - base)];
+        const double* b = &rows[C * B * at(q - base)];
         double* out = coarse.block(place[at(AP.columns[at(q)])]);
-        for (int j = 0; j < 6; ++j)
+        for (int j = 0; j < C; ++j)
           for (int m = 0; m < B; ++m)
-            for (int i = 0; i < 6; ++i) out[6 * j + i] += a[6 * m + i] * b[B * j + m];
+            for (int i = 0; i < C; ++i) out[C * j + i] += a[C * m + i] * b[B * j + m];
       }
     }
   });
@@ -173,9 +173,9 @@ void add_strip(const Blocks<float, 6, B>& P_transposed, const Sparsity& AP, int 
 
 }  // namespace
 
-template <int B, class Matrix>
-void galerkin(const Matrix& A, const Blocks<float, B, 6>& P, const Blocks<float, 6, B>& P_transposed,
-              Blocks<double, 6, 6>& coarse) {
+template <int B, class Matrix, int C>
+void galerkin(const Matrix& A, const Blocks<float, B, C>& P, const Blocks<float, C, B>& P_transposed,
+              Blocks<double, C, C>& coarse) {
   constexpr int strip = 2048;  // rows of A P that are held at once
   const int nodes = A.view().rows();
   const Sparsity AP = product_sparsity(A.view(), P.sparsity);
@@ -184,14 +184,14 @@ void galerkin(const Matrix& A, const Blocks<float, B, 6>& P, const Blocks<float,
   int most = 0;
   for (int first = 0; first < nodes; first += strip)
     most = std::max(most, AP.offsets[at(std::min(nodes, first + strip))] - AP.offsets[at(first)]);
-  std::vector<double> rows(6 * B * at(most));
+  std::vector<double> rows(C * B * at(most));
   Places places = places_of(AP);
   for (int first = 0; first < nodes; first += strip) {
     const int last = std::min(nodes, first + strip), base = AP.offsets[at(first)];
     for_rows(last - first, 64, [&](int r) {
       std::vector<int>& place = places.local();
       const int begin = AP.offsets[at(first + r)] - base, end = AP.offsets[at(first + r + 1)] - base;
-      std::fill(rows.begin() + 6 * B * begin, rows.begin() + 6 * B * end, 0.0);
+      std::fill(rows.begin() + C * B * begin, rows.begin() + C * B * end, 0.0);
       note_places(AP, first + r, begin, place);
       add_row<B>(A, first + r, P, place, rows.data());
     });
@@ -199,8 +199,8 @@ void galerkin(const Matrix& A, const Blocks<float, B, 6>& P, const Blocks<float,
   }
   for_rows(coarse.sparsity.rows(), 256, [&](int r) {
     for (int p = coarse.sparsity.offsets[at(r)]; p < coarse.sparsity.offsets[at(r + 1)]; ++p)
-      for (int i = 0; i < 6 && coarse.sparsity.columns[at(p)] == r; ++i)
-        if (coarse.block(p)[7 * i] == 0) coarse.block(p)[7 * i] = 1;
+      for (int i = 0; i < C && coarse.sparsity.columns[at(p)] == r; ++i)
+        if (coarse.block(p)[(C + 1) * i] == 0) coarse.block(p)[(C + 1) * i] = 1;
   });
 }
 
@@ -216,6 +216,7 @@ template Blocks<float, 3, 6> prolongation<3>(const Thin&, const std::vector<doub
                                              const Modes&, Modes&);
 template Blocks<float, 6, 6> prolongation<6>(const Thick&, const std::vector<double>&, double, const Aggregates&,
                                              const Modes&, Modes&);
+template void galerkin<3>(const FreeBlocks&, const Blocks<float, 3, 3>&, const Blocks<float, 3, 3>&, Thin&);
 template void galerkin<3>(const FreeBlocks&, const Blocks<float, 3, 6>&, const Blocks<float, 6, 3>&, Thick&);
 template void galerkin<3>(const Thin&, const Blocks<float, 3, 6>&, const Blocks<float, 6, 3>&, Thick&);
 template void galerkin<6>(const Thick&, const Blocks<float, 6, 6>&, const Blocks<float, 6, 6>&, Thick&);

@@ -30,8 +30,8 @@ Blocks<float, B, 6> prolongation(const Matrix& A, const std::vector<double>& inv
                                  const Aggregates& groups, const Modes& modes, Modes& coarse);
 
 /// P^T A P, with a unit diagonal where P leaves a coarse unknown without a share. `P_transposed` is P^T.
-template <int B, class Matrix>
-void galerkin(const Matrix& A, const Blocks<float, B, 6>& P, const Blocks<float, 6, B>& P_transposed,
-              Blocks<double, 6, 6>& coarse);
+template <int B, class Matrix, int C>
+void galerkin(const Matrix& A, const Blocks<float, B, C>& P, const Blocks<float, C, B>& P_transposed,
+              Blocks<double, C, C>& coarse);
 
 }  // namespace msml::fe

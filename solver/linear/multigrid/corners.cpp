@@ -85,6 +85,29 @@ void Corners::restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse)
   });
 }
 
+Blocks<float, 3, 3> Corners::wide(const SparsityView& A) const {
+  Blocks<float, 3, 3> P;
+  P.sparsity.width = count();
+  const auto is_corner = [&](int n) { return parents_[at(n)].first == parents_[at(n)].second; };
+  for (int n = 0; n < A.rows(); ++n) {
+    for (int p = A.offsets[at(n)]; p < A.offsets[at(n + 1)]; ++p) {
+      const int m = A.columns[at(p)];
+      if (m == n ? is_corner(n) : is_corner(m) && !is_corner(n)) P.sparsity.columns.push_back(parents_[at(m)].first);
+    }
+    P.sparsity.offsets.push_back(static_cast<int>(P.sparsity.columns.size()));
+  }
+  P.allocate();
+  for_rows(A.rows(), 1024, [&](int n) {
+    const auto [a, b] = parents_[at(n)];
+    for (int p = P.sparsity.offsets[at(n)]; p < P.sparsity.offsets[at(n + 1)]; ++p) {
+      const int c = P.sparsity.columns[at(p)];
+      for (int i = 0; i < 3 && (c == a || c == b); ++i)
+        if (!fixed_[at(3 * n + i)] && !fixed_coarse_[at(3 * c + i)]) P.block(p)[4 * i] = a == b ? 1.0f : 0.5f;
+    }
+  });
+  return P;
+}
+
 void Corners::restrict_vector(const std::vector<float>& fine, std::vector<float>& coarse) const {
   for_rows(count(), 512, [&](int c) {
     float sum[3] = {};

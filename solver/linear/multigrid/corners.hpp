@@ -16,6 +16,9 @@ class Corners {
   const std::vector<char>& fixed() const { return fixed_coarse_; }  ///< 3 per corner
   /// coarse = P^T A P, with a unit diagonal at fixed unknowns. The sparsity is made once.
   void restrict_matrix(const FreeBlocks& A, Blocks<double, 3, 3>& coarse) const;
+  /// P as blocks, in which mid nodes may take from all corners that they are coupled to in a matrix. Nodes of A: those
+  /// of the geometry.
+  Blocks<float, 3, 3> wide(const SparsityView& A) const;
   void restrict_vector(const std::vector<float>& fine, std::vector<float>& coarse) const;  ///< P^T
   void add_prolonged(const std::vector<float>& coarse, std::vector<float>& fine) const;    ///< fine += P coarse
   std::size_t bytes() const {

@@ -13,7 +13,6 @@ namespace {
 
 constexpr int piece = 512;        // rows of one task
 constexpr double highest = 1.05;  // above the estimated radius: Lanczos' method comes from below
-constexpr double lowest = 0.1;    // of the radius: errors below are left to the coarser grid
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 

@@ -39,6 +39,7 @@ class Level {
   void smooth(const Numbers& b, Numbers& x);
   /// r = b - A x.
   void residual(const Numbers& b, const Numbers& x, Numbers& r) const;
+  const Blocks<float, B, B>& matrix() const { return matrix_; }
   double radius() const { return radius_; }                        ///< largest eigenvalue of inverse(diagonal) A
   const std::vector<double>& inverse() const { return inverse_; }  ///< B x B for each node, column by column
   /// The inverse is not asked for any more.
@@ -48,7 +49,8 @@ class Level {
            (inverse_single_.size() + direction_.size() + other_.size()) * sizeof(float);
   }
 
-  int degree = 2;  ///< of the smoother
+  int degree = 2;       ///< of the smoother
+  double lowest = 0.1;  ///< of the radius: errors below are left to the coarser grid
 
  private:
   bool invert(const std::vector<double>& diagonals);

@@ -29,10 +29,20 @@ void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, 
   });
 }
 
+/// What a nearly incompressible body asks for, measured on beams at nu = 0.45 and 0.49 with 10^4 to 10^6 unknowns: at
+/// most 40 iterations to 1e-8. More steps of energy make prolongations that serve less well, not only dearer ones.
+constexpr int wide_steps = 3, first_steps = 5, later_steps = 6;
+template <int B>
+void reach_further(Level<B>& level, bool quadratic) {
+  level.degree = B == 3 ? 3 : 5;
+  level.lowest = quadratic ? 0.02 : B == 3 ? 0.04 : 0.06;
+}
+
 }  // namespace
 
 /// The matrix of the finest grid in single precision.
 bool Multigrid::set_fine(const FreeBlocks& A) {
+  if (nearly_incompressible()) reach_further(fine_.level, corners_.has_value());
   const std::size_t size = 3 * at(A.view().rows()) + 8;
   for (auto* v : {&fine_.b, &fine_.x, &fine_.r}) v->assign(size, 0.0f);
   return fine_.level.set(A);
@@ -59,6 +69,7 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
   grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
+  if (nearly_incompressible()) reach_further(grid.level, false);
   const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
   const std::size_t size = B * at(grid.matrix.sparsity.rows()) + 8;
   for (auto* v : {&grid.b, &grid.x, &grid.r}) v->assign(size, 0.0f);
@@ -76,6 +87,8 @@ bool Multigrid::coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>&
       Modes coarse;
       step.emplace();
       step->P = prolongation<B>(A, grid.level.inverse(), grid.level.radius(), groups, modes, coarse);
+      if (nearly_incompressible())
+        lower_energy(grid.level.matrix(), grid.level.inverse(), coarse, B == 3 ? first_steps : later_steps, step->P);
       step->restriction = transposed(step->P);
       modes = std::move(coarse);
     }
@@ -84,12 +97,28 @@ bool Multigrid::coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>&
   return step.has_value();
 }
 
+/// The grid of linear elements on the corners of quadratic ones.
+bool Multigrid::set_linear(const FreeBlocks& A) {
+  if (nearly_incompressible() && !wide_) {
+    Modes modes;
+    prepare_modes(corners_->node_of(), corners_->fixed(), modes);
+    wide_.emplace();
+    wide_->P = corners_->wide(A.view());
+    lower_energy(fine_.level.matrix(), fine_.level.inverse(), modes, wide_steps, wide_->P);
+    wide_->restriction = transposed(wide_->P);
+  }
+  fine_.level.forget_inverse();
+  if (wide_)
+    galerkin<3>(A, wide_->P, wide_->restriction, linear_.matrix);
+  else
+    corners_->restrict_matrix(A, linear_.matrix);
+  return settle(linear_);
+}
+
 bool Multigrid::set_matrices(const FreeBlocks& A) {
   if (!set_fine(A)) return false;
   if (corners_) {
-    fine_.level.forget_inverse();
-    corners_->restrict_matrix(A, linear_.matrix);
-    if (!settle(linear_)) return false;
+    if (!set_linear(A)) return false;
   }
   const Mask& fixed = corners_ ? corners_->fixed() : fixed_;
   Modes modes;
@@ -132,6 +161,7 @@ LinearStatus Multigrid::set(const BlockMatrix& A, const Mask& fixed) {
     corners_.reset();
     if (!geometry_.ends.empty()) corners_.emplace(geometry_, fixed);
     fine_ = linear_ = {};
+    wide_.reset();
     first_.reset();
     groups_.clear();
     steps_.clear();
@@ -159,9 +189,15 @@ void Multigrid::cycle(std::vector<float>& r, std::vector<float>& z) {
   if (corners_) {
     fine_.level.smooth_from_zero(fine_.b, fine_.x);
     fine_.level.residual(fine_.b, fine_.x, fine_.r);
-    corners_->restrict_vector(fine_.r, linear_.b);
+    if (wide_)
+      multiply_single(wide_->restriction, fine_.r, linear_.b, false);
+    else
+      corners_->restrict_vector(fine_.r, linear_.b);
     descend(linear_, first_, 0);
-    corners_->add_prolonged(linear_.x, fine_.x);
+    if (wide_)
+      multiply_single(wide_->P, linear_.x, fine_.x, true);
+    else
+      corners_->add_prolonged(linear_.x, fine_.x);
     fine_.level.smooth(fine_.b, fine_.x);
   } else {
     descend(fine_, first_, 0);
@@ -178,6 +214,7 @@ std::size_t Multigrid::bytes() const {
   const auto add_step = [&](const auto& step) { sum += step ? step->P.bytes() + step->restriction.bytes() : 0; };
   add_grid(fine_);
   add_grid(linear_);
+  add_step(wide_);
   add_step(first_);
   for (const Grid<6>& grid : groups_) add_grid(grid);
   for (const auto& step : steps_) add_step(step);

@@ -10,12 +10,16 @@
 #include "solver/linear/multigrid/coarsest.hpp"
 #include "solver/linear/multigrid/corners.hpp"
 #include "solver/linear/multigrid/level.hpp"
+#include "solver/linear/multigrid/prolongation.hpp"
 
 namespace msml::fe {
 
 /// z = V r, one symmetric V cycle: quadratic elements, then linear ones on the same corners, then groups of nodes that
 /// reproduce rigid motions (smoothed aggregation, Vanek, Mandel and Brezina 1996), then a dense inverse. The set-up is
 /// in double precision, the cycle in single.
+/// Where the volume hardly changes (Poisson's ratio above 0.4), averages of corners and of groups lock: what they let
+/// through changes the volume, which is stiff, and what does not change it they cannot make. There mid nodes take from
+/// all corners around them, prolongations lower their energy by a few steps, and smoothers reach further down.
 class Multigrid {
  public:
   explicit Multigrid(NodeGeometry geometry) : geometry_(std::move(geometry)) {}
@@ -28,10 +32,10 @@ class Multigrid {
 
  private:
   /// A grid of groups below a grid with B unknowns per node.
-  template <int B>
+  template <int B, int C = 6>
   struct Step {
-    Blocks<float, B, 6> P;
-    Blocks<float, 6, B> restriction;
+    Blocks<float, B, C> P;
+    Blocks<float, C, B> restriction;
   };
   template <int B>
   struct Grid {
@@ -43,6 +47,8 @@ class Multigrid {
   bool set_matrices(const FreeBlocks& A);
   bool set_groups(Modes& modes);
   bool set_fine(const FreeBlocks& A);
+  bool set_linear(const FreeBlocks& A);
+  bool nearly_incompressible() const { return geometry_.poisson_ratio > 0.4; }
   template <int B, class Matrix>
   bool coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>& skip, std::optional<Step<B>>& step,
                Modes& modes);
@@ -57,7 +63,8 @@ class Multigrid {
   bool made_ = false, fresh_ = true;  ///< fresh_: the grids are being made
   std::optional<Corners> corners_;
   Grid<3> fine_, linear_;
-  std::optional<Step<3>> first_;  ///< from the linear grid (or the fine one, if it is linear) to the first of groups
+  std::optional<Step<3, 3>> wide_;  ///< from quadratic to linear elements, where the body is nearly incompressible
+  std::optional<Step<3>> first_;    ///< from the linear grid (or the fine one, if it is linear) to the first of groups
   std::vector<Grid<6>> groups_;
   std::vector<std::optional<Step<6>>> steps_;  ///< steps_[k]: from groups_[k] to groups_[k + 1]
   Coarsest coarsest_;
