@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <numeric>
+#include <utility>
 
 namespace msml::fe {
 namespace {
@@ -40,16 +42,39 @@ Neighbours neighbours(const Numbering& numbering) {
   return found;
 }
 
+/// Elements in the order in which they are met through faces, from the first cell of the mesh on: it knows nothing of
+/// where the body lies or how its nodes are numbered.
+std::vector<int> breadth_first(const Numbering& numbering, const Neighbours& neighbours) {
+  std::vector<int> by_cell(numbering.elements.size()), order;
+  std::iota(by_cell.begin(), by_cell.end(), 0);
+  std::sort(by_cell.begin(), by_cell.end(), [&](int a, int b) {
+    return numbering.elements[static_cast<std::size_t>(a)] < numbering.elements[static_cast<std::size_t>(b)];
+  });
+  std::vector<char> met(by_cell.size(), 0);
+  const auto meet = [&](int e) {
+    if (e >= 0 && !std::exchange(met[static_cast<std::size_t>(e)], 1)) order.push_back(e);
+  };
+  std::size_t next = 0;
+  for (const int seed : by_cell)
+    for (meet(seed); next < order.size(); ++next)
+      for (const int e : neighbours[static_cast<std::size_t>(order[next])]) meet(e);
+  return order;
+}
+
 class Grouping {
  public:
   Grouping(const Numbering& numbering, int size)
       : numbering_(numbering),
         size_(size),
         neighbours_(neighbours(numbering)),
-        patch_of_(numbering.elements.size(), -1) {}
+        order_(breadth_first(numbering, neighbours_)),
+        rank_(order_.size()),
+        patch_of_(numbering.elements.size(), -1) {
+    for (std::size_t k = 0; k < order_.size(); ++k) rank_[static_cast<std::size_t>(order_[k])] = static_cast<int>(k);
+  }
 
   std::vector<std::vector<int>> run() {
-    for (int e = 0; e < static_cast<int>(patch_of_.size()); ++e)
+    for (const int e : order_)
       if (patch_of_[static_cast<std::size_t>(e)] < 0) grow(e);
     for (std::size_t p = 0; p < patches_.size(); ++p)
       if (2 * static_cast<int>(patches_[p].size()) < size_) join(p);
@@ -69,7 +94,7 @@ class Grouping {
       };
       const auto best = std::max_element(candidates.begin(), candidates.end(), [&](int a, int b) {
         const auto one = shared(a), two = shared(b);
-        return one != two ? one < two : a > b;
+        return one != two ? one < two : rank_[static_cast<std::size_t>(a)] > rank_[static_cast<std::size_t>(b)];
       });
       const int e = *best;
       candidates.erase(best);
@@ -106,6 +131,7 @@ class Grouping {
   const Numbering& numbering_;
   int size_;
   Neighbours neighbours_;
+  std::vector<int> order_, rank_;  ///< elements as they are met, and the place of each
   std::vector<int> patch_of_;
   std::vector<std::vector<int>> patches_;
 };
