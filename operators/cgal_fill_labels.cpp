@@ -38,8 +38,8 @@ Mesh refined(const LabelGrid& grid, const std::vector<Seed>& seeds, const Meshin
              const Watcher& watcher, const Announcer& announce) {
   CGAL::get_default_random() = CGAL::Random(0);
   CGAL::Random random(0);
-  const Vec3 extent(grid.spacing.x() * (grid.size[0] - 1), grid.spacing.y() * (grid.size[1] - 1),
-                    grid.spacing.z() * (grid.size[2] - 1));
+  const Vec3 extent(grid.spacing.x() * (grid.whole[0] - 1), grid.spacing.y() * (grid.whole[1] - 1),
+                    grid.spacing.z() * (grid.whole[2] - 1));
   // Interfaces are located to a fiftieth of a voxel: far below the staircase of the image.
   const double error = std::min(1e-3, 0.04 * grid.spacing.minCoeff() / extent.norm());
   const auto label = [&grid](const refine::Kernel::Point_3& p) { return grid.at(Vec3(p.x(), p.y(), p.z())); };
@@ -58,8 +58,8 @@ int LabelGrid::at(const Vec3& point) const {
   std::array<int, 3> base;
   std::array<double, 3> part;
   for (int d = 0; d < 3; ++d) {
-    const double x = point[d] / spacing[d];
     const auto i = static_cast<std::size_t>(d);
+    const double x = point[d] / spacing[d] - first[i];
     if (!(x >= 0 && x <= size[i] - 1)) return 0;
     base[i] = std::min(static_cast<int>(x), std::max(0, size[i] - 2));
     part[i] = x - base[i];

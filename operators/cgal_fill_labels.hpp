@@ -9,9 +9,12 @@
 
 namespace msml::operators {
 
-/// Labels 0..255 on a grid, 0 = outside; x runs fastest. Voxel (i j k) has its centre at spacing .* (i j k).
+/// Labels 0..255 on a grid, 0 = outside, of which a box is kept beyond which there is nothing but 0; x runs fastest.
+/// Voxel (i j k) of the box has its centre at spacing .* (first + (i j k)).
 struct LabelGrid {
-  std::array<int, 3> size{0, 0, 0};
+  std::array<int, 3> size{0, 0, 0};   ///< of the box
+  std::array<int, 3> first{0, 0, 0};  ///< place of the box in the whole grid
+  std::array<int, 3> whole{0, 0, 0};  ///< size of the whole grid
   Vec3 spacing = Vec3::Ones();
   std::vector<std::uint8_t> labels;
   std::size_t index(int i, int j, int k) const {
@@ -20,7 +23,7 @@ struct LabelGrid {
                (static_cast<std::size_t>(j) + static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(k));
   }
   /// The label at a point: of the eight voxels around it, the label with the largest sum of trilinear weights; the
-  /// smaller label where two are equal. 0 outside the centres of the outermost voxels.
+  /// smaller label where two are equal. 0 outside the centres of the outermost voxels of the box.
   int at(const Vec3& point) const;
 };
 

@@ -17,6 +17,11 @@ namespace {
 
 using Size = std::array<int, 3>;
 
+/// Part of an image.
+struct Box {
+  Size first, size;
+};
+
 /// The six neighbours of a voxel; outside the grid none.
 template <class Visit>
 void for_neighbours(const Size& size, std::size_t voxel, Visit visit) {
@@ -28,16 +33,40 @@ void for_neighbours(const Size& size, std::size_t voxel, Visit visit) {
   }
 }
 
-std::vector<int> whole_numbers(const Image& image) {
+int whole_number(const Image& image, std::size_t voxel) {
+  const double value = image.at(voxel);
+  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
+    throw Error(fmt::format("voxel {} of the image holds {}; a label image holds whole numbers", voxel, value));
+  return static_cast<int>(value);
+}
+
+/// Calls body(i, j, k, voxel) for every voxel of an image, or of a box in it.
+template <class Body>
+void for_voxels(const Image& image, const Box& box, const Body& body) {
+  for (int k = box.first[2]; k < box.first[2] + box.size[2]; ++k)
+    for (int j = box.first[1]; j < box.first[1] + box.size[1]; ++j)
+      for (int i = box.first[0]; i < box.first[0] + box.size[0]; ++i)
+        body(i, j, k, (static_cast<std::size_t>(k) * image.size[1] + j) * image.size[0] + i);
+}
+
+/// The smallest box around all voxels that are not 0.
+Box filled_box(const Image& image) {
   if (image.components != 1)
     throw Error(fmt::format("the image has {} components a voxel; a label image has one", image.components));
-  std::vector<int> labels(image.voxel_count());
-  for (std::size_t v = 0; v < labels.size(); ++v) {
-    const double value = image.at(v);
-    if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max())
-      throw Error(fmt::format("voxel {} of the image holds {}; a label image holds whole numbers", v, value));
-    labels[v] = static_cast<int>(value);
-  }
+  Size low = image.size, high{-1, -1, -1};
+  for_voxels(image, {{0, 0, 0}, image.size}, [&](int i, int j, int k, std::size_t voxel) {
+    if (whole_number(image, voxel) == 0) return;
+    const Size at{i, j, k};
+    for (std::size_t d = 0; d < 3; ++d) low[d] = std::min(low[d], at[d]), high[d] = std::max(high[d], at[d]);
+  });
+  if (high[0] < 0) throw Error("the image holds nothing but 0, the outside");
+  return {low, {high[0] - low[0] + 1, high[1] - low[1] + 1, high[2] - low[2] + 1}};
+}
+
+std::vector<int> labels_in(const Image& image, const Box& box) {
+  std::vector<int> labels;
+  labels.reserve(static_cast<std::size_t>(box.size[0]) * box.size[1] * box.size[2]);
+  for_voxels(image, box, [&](int, int, int, std::size_t voxel) { labels.push_back(whole_number(image, voxel)); });
   return labels;
 }
 
@@ -84,8 +113,8 @@ std::vector<Merged> merge_small(const Size& size, std::vector<int>& labels, long
   return merged;
 }
 
-/// Compresses the labels to 0, 1, 2, … in ascending order of value and puts one voxel of outside around the grid.
-void compress(const Image& image, const std::vector<int>& labels, LabelParts& out) {
+/// Compresses the labels to 0, 1, 2, … in ascending order of value and puts one voxel of outside around the box.
+void compress(const Image& image, const Box& box, const std::vector<int>& labels, LabelParts& out) {
   std::set<int> distinct(labels.begin(), labels.end());
   distinct.erase(0);
   constexpr std::size_t most = 254;
@@ -95,15 +124,17 @@ void compress(const Image& image, const std::vector<int>& labels, LabelParts& ou
   out.values.insert(out.values.end(), distinct.begin(), distinct.end());
   std::map<int, std::uint8_t> code{{0, 0}};
   for (std::size_t i = 1; i < out.values.size(); ++i) code[out.values[i]] = static_cast<std::uint8_t>(i);
-  out.grid.size = {image.size[0] + 2, image.size[1] + 2, image.size[2] + 2};
+  out.grid.whole = {image.size[0] + 2, image.size[1] + 2, image.size[2] + 2};
+  out.grid.first = box.first;  // one voxel of outside before the box, as before the image
+  out.grid.size = {box.size[0] + 2, box.size[1] + 2, box.size[2] + 2};
   out.grid.spacing = image.spacing;
   out.grid.labels.assign(out.grid.index(0, 0, out.grid.size[2]), 0);
   long filled = 0;
   std::size_t v = 0;
-  for (int k = 0; k < image.size[2]; ++k)
-    for (int j = 0; j < image.size[1]; ++j)
-      for (int i = 0; i < image.size[0]; ++i, ++v)
-        if (labels[v] != 0) out.grid.labels[out.grid.index(i + 1, j + 1, k + 1)] = code[labels[v]], ++filled;
+  for (int k = 1; k <= box.size[2]; ++k)
+    for (int j = 1; j <= box.size[1]; ++j)
+      for (int i = 1; i <= box.size[0]; ++i, ++v)
+        if (labels[v] != 0) out.grid.labels[out.grid.index(i, j, k)] = code[labels[v]], ++filled;
   out.volume = static_cast<double>(filled) * image.spacing.prod();
 }
 
@@ -151,7 +182,8 @@ void find_parts(LabelParts& out) {
 Vec3 centre(const LabelGrid& grid, std::size_t voxel) {
   const auto nx = static_cast<std::size_t>(grid.size[0]), ny = static_cast<std::size_t>(grid.size[1]);
   const std::size_t i = voxel % nx, j = voxel / nx % ny, k = voxel / (nx * ny);
-  return grid.spacing.cwiseProduct(Vec3(static_cast<double>(i), static_cast<double>(j), static_cast<double>(k)));
+  return grid.spacing.cwiseProduct(Vec3(static_cast<double>(i) + grid.first[0], static_cast<double>(j) + grid.first[1],
+                                        static_cast<double>(k) + grid.first[2]));
 }
 
 /// The segment, half a voxel long, on which the ray from a voxel's centre leaves the label.
@@ -182,11 +214,11 @@ std::vector<Vec3> twenty_directions() {
 
 LabelParts label_parts(const Image& image, long min_voxels) {
   LabelParts out;
-  std::vector<int> labels = whole_numbers(image);
-  if (std::all_of(labels.begin(), labels.end(), [](int label) { return label == 0; }))
-    throw Error("the image holds nothing but 0, the outside");
-  out.merged = merge_small(image.size, labels, min_voxels);
-  compress(image, labels, out);
+  const Box box = filled_box(image);
+  std::vector<int> labels = labels_in(image, box);
+  out.merged = merge_small(box.size, labels, min_voxels);
+  compress(image, box, labels, out);
+  std::vector<int>().swap(labels);
   if (out.values.size() == 1)
     throw Error(fmt::format("no label of the image has minVoxels = {} voxels or more", min_voxels));
   find_parts(out);
@@ -226,8 +258,9 @@ std::vector<bool> parts_present(const LabelParts& parts, const Mesh& mesh) {
     for (int i = 0; i < 4; ++i) middle += mesh.points.row(mesh.cell(c)[i]).transpose() / 4;
     std::array<int, 3> at;
     for (int d = 0; d < 3; ++d)
-      at[static_cast<std::size_t>(d)] = std::clamp(static_cast<int>(std::lround(middle[d] / grid.spacing[d])), 0,
-                                                   grid.size[static_cast<std::size_t>(d)] - 1);
+      at[static_cast<std::size_t>(d)] = std::clamp(
+          static_cast<int>(std::lround(middle[d] / grid.spacing[d])) - grid.first[static_cast<std::size_t>(d)], 0,
+          grid.size[static_cast<std::size_t>(d)] - 1);
     const std::size_t voxel = grid.index(at[0], at[1], at[2]);
     if (grid.labels[voxel] == mesh.region(c)) present[static_cast<std::size_t>(parts.part_of[voxel])] = true;
   }
