@@ -4,6 +4,7 @@
 
 #include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
+#include "operators/simulate/varying_record.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::simulation {
@@ -60,6 +61,7 @@ void check_pressure(const Record& condition, const Surroundings& around) {
 }
 
 void check_spring(const Record& condition) {
+  if (condition.tag().starts_with("spring")) VaryingRecord::check(condition);  // their numbers do not know the time
   const Value *first = value_of(condition, "first"), *second = value_of(condition, "second");
   if (first == nullptr || second == nullptr) return;
   const auto *one = std::get_if<Integer>(first), *two = std::get_if<Integer>(second);

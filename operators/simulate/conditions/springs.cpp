@@ -38,13 +38,7 @@ Vec3 point_of(const std::vector<double>& numbers, std::size_t i = 0) {
   return Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
 }
 
-double value_at(const Record& record, Key<Formula> key, const Vec3& X) {
-  const Function f = function(record, key);
-  if (f.of_time())
-    refuse(record, fmt::format("{} = '{}' depends on t; here X, Y and Z may stand",
-                               record.description->slots()[static_cast<std::size_t>(key.slot)].name, record[key].text));
-  return f(X, 0);
-}
+double value_at(const Record& record, Key<Formula> key, const Vec3& X) { return function(record, key)(X, 0); }
 
 fe::Spring spring_of(const Record& record, const SpringKeys& keys, int first, int second, const Vec3& point,
                      const Mesh& mesh) {
