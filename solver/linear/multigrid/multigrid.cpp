@@ -34,7 +34,7 @@ void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, 
 constexpr int wide_steps = 2, first_steps = 5, later_steps = 6;
 template <int B>
 void reach_further(Level<B>& level, bool quadratic) {
-  level.degree = B == 3 ? 3 : 5;
+  level.degree = 3;
   level.lowest = quadratic ? 0.02 : B == 3 ? 0.03 : 0.06;
 }
 
