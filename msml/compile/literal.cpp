@@ -113,7 +113,11 @@ Parsed parse_formulas(const Slot& slot, const std::string& text) {
     return read(part, value) != std::errc::invalid_argument;
   });
   if (!plain) parts = expression_parts(text);
-  if (!plain && length_problem(slot, 1).empty() && text.find(',') == std::string::npos && examine(text).problem.empty())
+  // Blanks may stand in one expression, but where each part is one by itself they divide the list.
+  const bool divided =
+      std::all_of(parts.begin(), parts.end(), [](const std::string& p) { return examine(p).problem.empty(); });
+  if (!divided && length_problem(slot, 1).empty() && text.find(',') == std::string::npos &&
+      examine(text).problem.empty())
     parts = {text};
   for (const std::string& part : parts) {
     Parsed entry = parse_formula(slot, part, fmt::format("{}: entry {} of the list", slot.name, list.size() + 1));

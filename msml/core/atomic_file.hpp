@@ -14,6 +14,16 @@ void write_whole(const std::filesystem::path& path, const std::function<void(con
 /// The same for a text.
 void write_whole(const std::filesystem::path& path, const std::string& text);
 
+/// While one lives, files still appear whole or not at all, but are not flushed to disk: for what can be made again,
+/// and whose time is measured.
+class WithoutFlushing {
+ public:
+  WithoutFlushing();
+  ~WithoutFlushing();
+  WithoutFlushing(const WithoutFlushing&) = delete;
+  WithoutFlushing& operator=(const WithoutFlushing&) = delete;
+};
+
 /// Unlinks every temporary file in the making and lets no new one begin: to be called just before the program ends,
 /// while other threads may still write.
 void unlink_temporaries() noexcept;

@@ -4,8 +4,8 @@
 
 namespace msml {
 
-/// Blocks SIGINT and SIGTERM in the calling thread (and all it starts later) and starts a thread that waits for them:
-/// it unlinks the files in the making, says so, and exits with 130. Finished outputs stay.
+/// SIGINT and SIGTERM, whichever thread they reach (those of libraries block nothing), wake a thread that unlinks the
+/// files in the making, says so, and exits with 130. Finished outputs stay.
 void watch_for_interrupts();
 
 }  // namespace msml

@@ -60,7 +60,9 @@ class Drawing {
     text += theory_plots(chart_);
     for (std::size_t i = 0; i < curves_.size(); ++i) text += (i == 0 ? "" : ", \\\n     ") + plot(i);
     return text +
-           (failures.empty() ? "" : ", \\\n     $failed with points pt 2 ps 1.4 lw 2 lc rgb \"#B00000\" notitle") +
+           (failures.find("$failed") == std::string::npos
+                ? ""
+                : ", \\\n     $failed with points pt 2 ps 1.4 lw 2 lc rgb \"#B00000\" notitle") +
            "\n";
   }
 
@@ -228,11 +230,12 @@ class Drawing {
       add(x, row, chart_.x, x_.log);
       if (!x.empty()) points += fmt::format("{:.10g} {:.12g}\n", x.front(), y_.low);
     }
-    if (points.empty()) return {};
-    return fmt::format(
-        "$failed << EOD\n{}EOD\nset label \"× {} run{} without a result\" at screen 0.99, screen 0.025 right "
-        "tc rgb \"#B00000\"\n",
-        points, count, count == 1 ? "" : "s");
+    if (count == 0) return {};
+    if (!points.empty()) points = fmt::format("$failed << EOD\n{}EOD\n", points);
+    return points + fmt::format(
+                        "set label \"{}{} run{} without a result\" at screen 0.99, screen 0.025 right tc rgb "
+                        "\"#B00000\"\n",
+                        points.empty() ? "" : "× ", count, count == 1 ? "" : "s");
   }
 
   Table table_;

@@ -25,6 +25,7 @@ struct Subject {
   std::string error, name;
   Settings only;
   std::vector<std::string> group;
+  bool weighed = false;  ///< a chart puts it over what it costs; else other runs may be other problems
 };
 
 std::vector<Subject> subjects(const Study& study) {
@@ -32,14 +33,21 @@ std::vector<Subject> subjects(const Study& study) {
   for (const Measure& m : study.measures) {
     if (!m.against_truth || !m.relative) continue;
     for (const Chart& chart : study.charts) {
-      const bool seen = std::any_of(found.begin(), found.end(),
-                                    [&](const Subject& each) { return each.error == m.id && each.only == chart.only; });
-      if (chart.y != m.id || seen) continue;
-      found.push_back({m.id, m.id, chart.only, chart.group});
+      if (chart.y != m.id) continue;
+      const auto variables = study.variables();
+      const bool weighed = std::find(variables.begin(), variables.end(), chart.x) == variables.end();
+      const auto seen = std::find_if(found.begin(), found.end(), [&](const Subject& each) {
+        return each.error == m.id && each.only == chart.only;
+      });
+      if (seen != found.end()) {
+        seen->weighed = seen->weighed || weighed;
+        continue;
+      }
+      found.push_back({m.id, m.id, chart.only, chart.group, weighed});
       for (const auto& [name, value] : chart.only) found.back().name += fmt::format(", {} = {}", name, value);
     }
     if (std::none_of(found.begin(), found.end(), [&](const Subject& each) { return each.error == m.id; }))
-      found.push_back({m.id, m.id, {}, {}});
+      found.push_back({m.id, m.id, {}, {}, true});
   }
   return found;
 }
@@ -50,8 +58,8 @@ class Costs {
       : study_(study), table_(filtered(table, subject.only)), subject_(subject), page_(page) {}
 
   void add() {
-    front();
-    cheapest();
+    if (subject_.weighed) front();
+    if (subject_.weighed) cheapest();
     ratios();
   }
 

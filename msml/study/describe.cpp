@@ -272,11 +272,11 @@ Description study_tag(StudyKeys& k) {
                                       .optional = true,
                                       .doc = "a run whose passes have taken this long is not repeated again; the "
                                              "column passes says how often it was timed"});
-  k.limit =
-      tag.parameter("limit", {.unit = "seconds",
-                              .range = positive(),
-                              .optional = true,
-                              .doc = "a run that takes longer is ended, and is a data point with status 'limit'"});
+  k.limit = tag.parameter("limit", {.unit = "seconds",
+                                    .range = positive(),
+                                    .optional = true,
+                                    .doc = "a run that takes longer is ended, where it next tells of its progress, and "
+                                           "is a data point with status 'limit'; the reference has no limit"});
   tag.allow({"vary", 1});
   tag.allow({"reference", 0, 1});
   tag.allow({"measure"});

@@ -100,10 +100,9 @@ double seconds(const Measure& wanted, const Finished& finished) {
     return number(fact(finished, wanted.of, "check"), Json::json_pointer(std::string("/seconds/") + part));
   };
   if (wanted.what == "setup" || wanted.what == "assembly" || wanted.what == "linear") return spent(wanted.what.c_str());
-  if (wanted.what == "simulation") return nodes[at(output(finished, wanted.of).node)].seconds;
-  if (wanted.what == "step")
-    return std::max(0.0, nodes[at(output(finished, wanted.of).node)].seconds - spent("setup")) /
-           increments(fact(finished, wanted.of, "settings"));
+  if (wanted.what == "simulation")
+    return std::max(0.0, nodes[at(output(finished, wanted.of).node)].seconds - spent("output"));
+  if (wanted.what == "step") return spent("steps") / increments(fact(finished, wanted.of, "settings"));
   return nodes[at(output(finished, wanted.what).node)].seconds;
 }
 

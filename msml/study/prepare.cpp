@@ -132,10 +132,19 @@ class Preparation {
     return nodes;
   }
 
-  static std::string truth_key(const Study& study) {
+  /// What tells a file from what it was before.
+  std::string stamp(const std::string& file) const {
+    if (file.empty()) return {};
+    std::error_code code;
+    const auto path = document_.folder / file;
+    return fmt::format(" {} {}", std::filesystem::file_size(path, code),
+                       std::filesystem::last_write_time(path, code).time_since_epoch().count());
+  }
+
+  std::string truth_key(const Study& study) const {
     std::string key;
     if (study.truth) {
-      key = fmt::format("{} {}", study.truth->file, study.truth->time);
+      key = fmt::format("{} {}", study.truth->file, study.truth->time) + stamp(study.truth->file);
       for (const Formula& formula : study.truth->expected) key += fmt::format(" {} {}", formula.text, formula.number);
     }
     for (const Measure& m : study.measures)

@@ -33,6 +33,37 @@ Json row_json(const Table& table, std::size_t row) {
   return json;
 }
 
+Json definition(const Study& study) {
+  const auto texts = [](const Settings& settings) {
+    Json json = Json::object();
+    for (const auto& [name, value] : settings) json[name] = value;
+    return json;
+  };
+  constexpr const char* combinations[] = {"product", "zip", "latinHypercube"};
+  Json json{{"combine", combinations[static_cast<std::size_t>(study.combine)]}};
+  if (study.samples > 0) json["samples"] = study.samples, json["seed"] = study.seed;
+  json["vary"] = Json::array();
+  for (const Vary& each : study.vary) {
+    Json vary{{"variables", each.variables}};
+    if (each.values.empty())
+      vary.update({{"from", each.from}, {"to", each.to}, {"log", each.log}, {"whole", each.whole}});
+    else
+      vary["values"] = each.values;
+    json["vary"].push_back(vary);
+  }
+  if (study.truth) {
+    json["reference"] = {
+        {"set", texts(study.truth->set)}, {"file", study.truth->file}, {"extrapolate", study.truth->extrapolate}};
+    for (const Formula& formula : study.truth->expected)
+      json["reference"]["expected"].push_back(formula.constant() ? Json(formula.number) : Json(formula.text));
+  }
+  json["measures"] = Json::array();
+  for (const Measure& each : study.measures)
+    json["measures"].push_back(
+        {{"id", each.id}, {"what", each.what}, {"field", each.field}, {"of", each.of}, {"relative", each.relative}});
+  return json;
+}
+
 }  // namespace
 
 std::string machine() {
@@ -97,6 +128,7 @@ std::string study_json(const Study& study, const Table& table, const std::string
   if (!units.empty()) json["units"] = units;
   for (const auto& [column, unit] : column_units(study)) json["columnUnits"][column] = unit;
   json["variables"] = study.variables();
+  json["definition"] = definition(study);
   json["rows"] = Json::array();
   for (std::size_t row = 0; row < table.rows.size(); ++row) json["rows"].push_back(row_json(table, row));
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

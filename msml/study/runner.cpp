@@ -3,6 +3,7 @@
 #include "msml/study/runner.hpp"
 
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <atomic>
@@ -167,6 +168,8 @@ class Runner {
   }
 
   RunResult pass(const Prepared& scene, RunShelf& shelf, const fs::path& folder, double limit) {
+    const WithoutFlushing scratch;         // a run is made again sooner than a disk has taken it
+    if (study_.timed()) ::malloc_trim(0);  // what runs before have left is not of this one's peak
     Stopwatch watch(limit);
     RunResult result = msml::run(scene.graph, scene.plan, registry_, {folder, 1, options_.threads, &shelf}, watch);
     if (result.errors.empty() && limit > 0 && result.seconds > limit) result.errors.push_back(beyond(limit));
@@ -267,24 +270,35 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
   Runner runner(study, registry, options, results);
   std::mutex mutex;
   std::atomic<std::size_t> next = 0;
+  const bool alone = study.alone() || options.jobs < 2;
+  const auto status = static_cast<std::size_t>(table.find("status"));
+  std::vector<std::size_t> late;
+  const auto keep = [&](std::size_t run, std::vector<std::string> row) {
+    results.release(all_used(runs[run]));
+    table.rows[run] = std::move(row);
+    Table so_far{table.columns, {}};
+    for (const auto& each : table.rows)
+      if (!each.empty()) so_far.rows.push_back(each);
+    write_whole(options.folder / "results.csv", to_csv(so_far));
+    sink(table, run);
+  };
   const auto work = [&] {
     for (std::size_t i = next++; i < open.size(); i = next++) {
       auto row = runner.row(runs[open[i]], open[i]);
-      results.release(all_used(runs[open[i]]));
       const std::lock_guard lock(mutex);
-      table.rows[open[i]] = std::move(row);
-      Table so_far{table.columns, {}};
-      for (const auto& each : table.rows)
-        if (!each.empty()) so_far.rows.push_back(each);
-      write_whole(options.folder / "results.csv", to_csv(so_far));
-      sink(table, open[i]);
+      if (!alone && row[status] == "limit")
+        late.push_back(open[i]);  // it may have waited for another: once more, by itself
+      else
+        keep(open[i], std::move(row));
     }
   };
   {
     std::vector<std::jthread> others;
-    for (int i = 1; i < (study.alone() ? 1 : options.jobs); ++i) others.emplace_back(work);
+    for (int i = 1; i < (alone ? 1 : options.jobs); ++i) others.emplace_back(work);
     work();
   }
+  std::sort(late.begin(), late.end());
+  for (const std::size_t i : late) keep(i, runner.row(runs[i], i));
   extrapolate(study, table);
   write_whole(options.folder / "results.csv", to_csv(table));
   if (!options.keep) {

@@ -95,6 +95,7 @@ std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "deformationGradient") return tensors().deformation_gradient;
   if (name == "J") return J();
   if (name == "fiberStretch") return measure(only_fibre_stretch).fibre_stretch;
+  if (name == "region") return std::vector<double>(model_.mesh->regions.begin(), model_.mesh->regions.end());
   throw Error("no field '" + name + "'", {}, Failure::internal);
 }
 

@@ -148,6 +148,14 @@ void check_supports(const Run& run, const EquilibriumPath& path, const Step& ste
   }
 }
 
+void check_loads(const Arc& arc, const Step& step) {
+  if (arc.reference(arc.run.now.u).squaredNorm() > 0) return;
+  throw Error(fmt::format(
+      "step '{}' has no load when it starts, at t = {:g}: arcLength scales the loads that act there. Give one, "
+      "without a table or a function of t that is 0 then, or take arcLength=\"false\"",
+      step.name, arc.path.start));
+}
+
 bool enough(const Run& run, int taken) {
   const ArcLength& arc = run.model.settings.arc_length;
   return taken >= arc.steps || std::abs(run.now.load_factor) >= arc.load ||
@@ -217,6 +225,7 @@ void run_arc_length(Run& run) {
             run.equations.has_followers() ? make_unsymmetric(model.settings.threads)
                                           : make_indefinite(model.settings.threads),
             BlockMatrix(run.newton.tangent().pattern)};
+    check_loads(arc, step);
     for (int taken = 0; !enough(run, taken); ++taken)
       if (!advance(arc) || !run.accept()) return;
   }

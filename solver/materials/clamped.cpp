@@ -89,7 +89,7 @@ StretchEnergy<double> with_quotients(const Jet<double, 3>& w, const double (&s)[
 
 class ClampedLaw final : public Law {
  public:
-  ClampedLaw(std::shared_ptr<const Law> law, double c, Lanes stiffness)
+  ClampedLaw(std::shared_ptr<const Law> law, Lanes c, Lanes stiffness)
       : law_(std::move(law)), stretch_law_(dynamic_cast<const StretchLaw*>(law_.get())), c_(c), stiffness_(stiffness) {
     assert(stretch_law_ != nullptr && law_->isotropic());
   }
@@ -114,15 +114,16 @@ class ClampedLaw final : public Law {
   bool survives_inversion() const override { return true; }
   std::shared_ptr<const Law> merged(std::span<const std::shared_ptr<const Law>> others) const override {
     std::vector<std::shared_ptr<const Law>> inner;
-    Lanes stiffness = stiffness_;
+    Lanes c = c_, stiffness = stiffness_;
     for (std::size_t lane = 0; lane < others.size(); ++lane) {
       const auto* other = dynamic_cast<const ClampedLaw*>(others[lane].get());
-      if (other == nullptr || other->c_ != c_) return {};
+      if (other == nullptr) return {};
       inner.push_back(other->law_);
+      c[lane] = other->c_[lane];
       stiffness[lane] = other->stiffness_[lane];
     }
     auto law = law_->merged(inner);
-    return law ? std::make_shared<ClampedLaw>(std::move(law), c_, stiffness) : nullptr;
+    return law ? std::make_shared<ClampedLaw>(std::move(law), c, stiffness) : nullptr;
   }
 
  private:
@@ -138,10 +139,11 @@ class ClampedLaw final : public Law {
       for (int k = 0; k < 9; ++k) f(k / 3, k % 3) = F.c[k][lane];
       if (!f.allFinite()) continue;
       const Stretches<double> s = signed_stretches(f);
-      if (s.value[2] >= c_) continue;
+      if (s.value[2] >= c_[lane]) continue;
       any = true;
       ResponseOf<double> one;
-      respond(with_quotients(continued(*stretch_law_, lane, s.value, c_, stiffness_[lane]), s.value), s, tangent, one);
+      respond(with_quotients(continued(*stretch_law_, lane, s.value, c_[lane], stiffness_[lane]), s.value), s, tangent,
+              one);
       out.energy[lane] = one.energy;
       for (int k = 0; k < 9; ++k) out.P.c[k][lane] = one.P.c[k];
       for (int k = 0; k < 45 && tangent; ++k) out.tangent[k][lane] = one.tangent[k];
@@ -151,8 +153,7 @@ class ClampedLaw final : public Law {
 
   std::shared_ptr<const Law> law_;
   const StretchLaw* stretch_law_;
-  double c_;
-  Lanes stiffness_;
+  Lanes c_, stiffness_;
 };
 
 }  // namespace
@@ -172,7 +173,7 @@ std::array<Jet<Nilpotent, 3>, 3> invariants_of_stretches(const Nilpotent (&s)[3]
 std::shared_ptr<const Law> make_clamped(std::shared_ptr<const Law> law, double c) {
   if (!open(0, 1).contains(c)) throw Error(fmt::format("clampedBelow = {} is not in (0, 1)", c));
   const double nu = law->poisson_ratio(), stiffness = 2 * law->shear_modulus() * (1 - nu) / (1 - 2 * nu);
-  return std::make_shared<ClampedLaw>(std::move(law), c, lanes_of(stiffness));
+  return std::make_shared<ClampedLaw>(std::move(law), lanes_of(c), lanes_of(stiffness));
 }
 
 InversionKeys describe_inversion(Description& material) {

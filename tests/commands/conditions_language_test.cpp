@@ -35,6 +35,12 @@ TEST(ConditionsLanguage, LoadsAndSupportsTakeExpressions) {
   EXPECT_EQ(faults("<initialVelocity velocity=\"-Y, X, 0\"/>"), "");
 }
 
+TEST(ConditionsLanguage, BlanksDivideListsWhereEachPartIsAnExpression) {
+  EXPECT_EQ(faults("<surfacePressure indices=\"${i}\" pressure=\"1 - exp(-t)\"/>"), "");
+  EXPECT_EQ(faults("<displacementConstraint indices=\"${i}\" displacement=\"Y -Z -X\"/>"), "");
+  EXPECT_NE(faults("<displacementConstraint indices=\"${i}\" displacement=\"Y -Z\"/>"), "");
+}
+
 TEST(ConditionsLanguage, FaultsOfExpressionsNameTheirPlace) {
   EXPECT_EQ(faults("<displacementConstraint indices=\"${i}\" displacement=\"sin(T), 0, 0\"/>"),
             "s.xml:2: displacement: entry 1 of the list = sin(T): 'T' at position 5 is unknown");

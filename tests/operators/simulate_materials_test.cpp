@@ -141,6 +141,24 @@ TEST(Materials, TakeExpressionsInListsAndDirections) {
       HasSubstr("fiber = 't' depends on t"));
 }
 
+TEST(Materials, AreClampedBelowAStretchThatVaries) {
+  const Language language;
+  Listener listener;
+  const Attributes attributes{{"youngModulus", 1000.0},
+                              {"poissonRatio", 0.3},
+                              {"inversion", std::string("clamped")},
+                              {"clampedBelow", Formula("0.2 + 0.1*Z")}};
+  const auto law_with = [&](const Value& below) {
+    return build_model(bar(language, "neoHookeanMaterial", with(attributes, "clampedBelow", below)).record(language),
+                       listener, 1);
+  };
+  const auto varying = law_with(Formula("0.2 + 0.1*Z")), there = law_with(0.4);
+  const auto law = varying.model.regions[0].point_law(std::vector<int>{0}, std::vector<Vec3>{{0, 0, 0}, {0, 0, 2}});
+  const Mat3 expected = stress(*there.model.regions[0].law, 1, 1, 0.1, 0);
+  EXPECT_LT((stress(*law, 1, 1, 0.1, 1) - expected).norm(), 1e-9);
+  EXPECT_GT((stress(*law, 1, 1, 0.1, 0) - expected).norm(), 1);
+}
+
 TEST(Materials, TakeExpressionsBesideFields) {
   const Language language;
   Listener listener;

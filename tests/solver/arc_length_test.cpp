@@ -90,6 +90,18 @@ TEST(ArcLength, StopsAtALoadBoundNearTheTurn) {
   EXPECT_LT(outcome.state.load_factor, 1.2 * 1.0015);
 }
 
+TEST(ArcLength, RefusesAStepWithoutLoads) {
+  Model model = beam_model(1, CellKind::tet4, 0.3, Strain::corotated);
+  model.settings.arc_length.on = true;
+  model.steps[0].gravity.setZero();
+  try {
+    solve(model, {});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.str(), HasSubstr("has no load when it starts, at t = 0"));
+  }
+}
+
 TEST(ArcLength, RefusesMovedSupportsAndOtherIntegrators) {
   Model model = beam_model(1, CellKind::tet4, 0.3, Strain::corotated);
   model.settings.arc_length.on = true;

@@ -62,6 +62,8 @@ TEST(Chart, TimesHaveErrorBars) {
   const std::string script = gnuplot_script(convergence(), chart, {.labels = {{"time", "time [s]"}}});
   EXPECT_THAT(script, HasSubstr("xerrorbars"));
   EXPECT_THAT(script, HasSubstr("set xlabel \"time [s]\""));
+  EXPECT_THAT(script, HasSubstr("set label \"1 run without a result\"")) << "which has no place on this axis";
+  EXPECT_THAT(script, Not(HasSubstr("$failed")));
 }
 
 TEST(Chart, ShowsWhatTheoryKnows) {
