@@ -47,12 +47,14 @@ std::vector<FormulationName> formulations(CellKind kind) {
   if (kind == CellKind::tet4)
     found.push_back(
         {"fbar", fe::Formulation::fbar,
-         "fbar: volume changes averaged over patches of about eight elements, does not lock for poissonRatio "
-         "near 0.5"});
+         "fbar: volume changes averaged over patches of about eight elements (mean dilatation, de Souza Neto, Andrade "
+         "Pires and Owen 2005, doi 10.1002/nme.1187, in a form that has an energy, so that the tangent is symmetric), "
+         "does not lock for poissonRatio near 0.5"});
   if (kind == CellKind::tet10)
     found.push_back(
         {"mixed", fe::Formulation::mixed,
-         "mixed: with a pressure linear in each element, for materials near incompressible or incompressible; the "
+         "mixed: with a pressure linear in each element (Taylor and Hood 1973, doi 10.1016/0045-7930(73)90027-3), for "
+         "materials near incompressible or incompressible; the "
          "pressure is continuous inside a region and jumps between regions, so give what jumps a region of its own "
          "rather than an entry of `fields`"});
   if (kind == CellKind::tet10)

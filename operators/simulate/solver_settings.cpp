@@ -126,7 +126,9 @@ void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
                         .fallback = usual.step_tolerance,
                         .doc = "with adaptiveStep in implicit dynamics: error of a step beside the displacement"});
   keys.arc_length = tag.parameter<bool>(
-      "arcLength", {.fallback = false, .doc = "static: follow equilibria past limit points of the load"});
+      "arcLength", {.fallback = false,
+                    .doc = "static: follow equilibria past limit points of the load; the first step goes as far as the "
+                           "tangent foresees for one of loadSteps parts of it, later ones up to ten times as far"});
   keys.arc_steps = tag.parameter<Integer>(
       "arcSteps", {.range = closed(1, 1000000), .fallback = usual.arc_length.steps, .doc = "of arcLength: states"});
   keys.largest_load =
@@ -159,7 +161,8 @@ void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
       "definiteness",
       {.fallback = "auto",
        .choices = {"auto", "always", "never"},
-       .doc = "a semidefinite tangent: where the exact one is indefinite, in each iteration, or never"});
+       .doc = "a semidefinite tangent of the elements (Teran, Sifakis, Irving and Fedkiw 2005, doi "
+              "10.1145/1073368.1073394): where the exact one is indefinite, in each iteration, or never"});
   keys.load_steps = tag.parameter<Integer>(
       "loadSteps", {.range = closed(1, 100000), .fallback = 1, .doc = "static: equal parts that the loads come in"});
   keys.threads = tag.parameter<Integer>(

@@ -173,6 +173,7 @@ void run_explicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     if (s == 0) run.hold_start(supports);
+    if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
     ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();

@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Elements, Invariance,
                                            Body{"tet10", CellKind::tet10, Formulation::standard},
                                            Body{"tet10SR", CellKind::tet10, Formulation::single_rotation},
                                            Body{"mixed", CellKind::tet10, Formulation::mixed}),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& each) { return std::string(each.param.name); });
 
 }  // namespace
 }  // namespace msml::fe

@@ -57,6 +57,10 @@ ConditionFactory supporting_mesh() {
   tag.note(
       "Its nodes move with the elements of the main mesh that hold them, so that it adds no unknowns: its forces, "
       "stiffness and mass come on top of those of the tissue in its place.");
+  tag.note(
+      "Its stresses act on the main mesh at its nodes: a uniform stress is met exactly where its linear elements nest "
+      "in "
+      "linear ones of the main mesh, else as its own elements shrink.");
   tag.note("Its material is linearElasticMaterial: of small strain where that of all regions is, else corotated.");
   tag.note(
       "Its forces, energy and mass count in sections, energies and the check; fields and volumes are those of the main "
