@@ -115,7 +115,7 @@ std::string map_script(const Table& all, const Chart& chart, const ChartStyle& s
                      tics + legend() + limit_lines(chart, frame.x);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const std::size_t i = place(xs, table.number(row, chart.x)), k = place(ys, table.number(row, chart.y));
-    if (i >= xs.size() || k >= ys.size()) continue;
+    if (i >= xs.size() || k >= ys.size() || table.text(row, "status") == "no reference") continue;  // it never ran
     text += fmt::format(
         "set object rectangle from first {:.8g},{:.8g} to first {:.8g},{:.8g} behind fs solid border lc "
         "rgb \"#FFFFFF\" fc rgb \"{}\"\n",

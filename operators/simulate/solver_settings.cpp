@@ -120,7 +120,9 @@ void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
       "adaptiveStep",
       {.fallback = false,
        .doc = "shorter and longer steps between the reported states, by iterations and error; with prony in "
-              "statics at most half its shortest tau"});
+              "statics at most half its shortest tau. Kinks of tables are met; those of an expression are not known: "
+              "take a "
+              "dt that sees them"});
   keys.step_tolerance = tag.parameter(
       "stepTolerance", {.range = open(0, 1),
                         .fallback = usual.step_tolerance,

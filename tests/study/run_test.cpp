@@ -188,7 +188,8 @@ TEST(StudyRun, SharedNodesCostARunNoTimeOfItsOwn) {
     <measure id="own" time="own"/> <measure id="simulation" time="simulation"/></study>)",
           folder);
   EXPECT_EQ(ran.table.number(0, "own"), ran.table.number(0, "all")) << "the first computes all";
-  EXPECT_GE(ran.table.number(1, "own"), ran.table.number(1, "simulation")) << "which does not hold the writing of files";
+  EXPECT_GE(ran.table.number(1, "own"), ran.table.number(1, "simulation"))
+      << "which does not hold the writing of files";
   EXPECT_GT(ran.table.number(1, "all"), ran.table.number(1, "own"));
 }
 
