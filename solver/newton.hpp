@@ -71,6 +71,10 @@ class Newton {
   Stop state_verdict() const;
   /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
   Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Supports& supports);
+  /// Mixed elements: gives u the pressures that belong to its displacements, int N_c (g(F) - p / k) = 0 for each corner
+  /// (see MixedElements). Returns how many are not determined so, as k is infinite: these keep their values. Nothing
+  /// changes where the forces at u are not finite.
+  int settle_pressures(Vector& u);
   /// What is missing in the balance of an increment with the forces that were last evaluated.
   Vector residual(const Increment& increment) const;
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated

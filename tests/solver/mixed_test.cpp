@@ -237,6 +237,60 @@ TEST(MixedElements, KeepTheEnergyOfAVibration) {
   EXPECT_LT(drift, 1e-8 * largest);  // the tolerance of 40 steps, amplified by the stiffness of the volume
 }
 
+constexpr double stretched = 0.1, sheared = 0.05, stretched_nu = 0.3;
+
+/// A free cube of small strains that is let go at u = (stretched x + sheared y, 0, 0).
+Model let_go(Formulation formulation, double dt, int count) {
+  Model model = make_model(unit_mesh(2, CellKind::tet10),
+                           {.youngs_modulus = 1000, .poisson_ratio = stretched_nu, .strain = Strain::small});
+  model.formulation = formulation;
+  model.settings.integrator = Integrator::newmark;
+  model.settings.tolerance = 1e-12;
+  model.steps[0].gravity = Vec3::Zero();
+  model.steps[0].dt = dt;
+  model.steps[0].count = count;
+  model.initial_displacement = Points::Zero(model.mesh->point_count(), 3);
+  model.initial_displacement.col(0) = stretched * model.mesh->points.col(0) + sheared * model.mesh->points.col(1);
+  return model;
+}
+
+/// The state that a run begins with.
+State first_state(const Model& model) {
+  State first;
+  solve(model, [&](const State& state) {
+    first = state;
+    return false;
+  });
+  return first;
+}
+
+// Under a uniform strain p = -lambda e and W = lambda e^2/2 + mu eps : eps, and the forces are those of plain elements.
+TEST(MixedElements, BeginWithThePressureOfTheInitialDisplacement) {
+  const State mixed = first_state(let_go(Formulation::mixed, 0.001, 1));
+  const State plain = first_state(let_go(Formulation::standard, 0.001, 1));
+  const double mu = 1000 / (2 * (1 + stretched_nu)), lambda = 2 * mu * stretched_nu / (1 - 2 * stretched_nu);
+  EXPECT_THAT(mixed.pressure, ::testing::Each(::testing::DoubleNear(-lambda * stretched, 1e-10 * lambda * stretched)));
+  const double squares = stretched * stretched + 0.5 * sheared * sheared;
+  EXPECT_NEAR(mixed.energies.elastic, 0.5 * lambda * stretched * stretched + mu * squares, 1e-10);
+  EXPECT_LT((mixed.acceleration - plain.acceleration).norm(), 1e-10 * plain.acceleration.norm());
+}
+
+TEST(MixedElements, KeepTheOrderOfNewmarkFromAnInitialDisplacement) {
+  Points end[3];
+  for (int fine = 0; fine < 3; ++fine)
+    end[fine] = solve(let_go(Formulation::mixed, 0.0005 / (1 << fine), 10 << fine), {}).state.displacement;
+  // Of differences; those of the next pair of steps lie as much nearer to 2 again.
+  EXPECT_NEAR(std::log2((end[0] - end[1]).norm() / (end[1] - end[2]).norm()), 2, 0.1);
+}
+
+TEST(MixedElements, SayThatAnInitialDisplacementLeavesThePressureOfIncompressibleOnesOpen) {
+  Model model = let_go(Formulation::mixed, 0.001, 1);
+  model.regions[0].law = incompressible_rubber();
+  model.initial_displacement.col(0) = sheared * model.mesh->points.col(1);
+  const Outcome outcome = solve(model, {});
+  EXPECT_THAT(outcome.notes, ::testing::Contains(::testing::HasSubstr("pressure in incompressible regions")));
+}
+
 // Both halves are strained alike, so that the pressures are -k e with k = E/(3 (1 - 2 nu)) of each, and the stresses
 // along and across sigma = lambda e + 2 mu e and lambda e: closed forms of linear elasticity.
 TEST(MixedElements, HaveAPressureOfTheirOwnInEachRegion) {
