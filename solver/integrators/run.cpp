@@ -71,7 +71,10 @@ void Run::refuse_pushed_bodies() {
 
 bool Run::sound_start() {
   const Assembled& found = newton.forces().found;
-  if (found.finite && std::isfinite(found.energy)) return true;
+  if (found.finite && std::isfinite(found.energy)) {
+    if (equations.has_history()) equations.end_step(now.u);  // a sudden strain
+    return true;
+  }
   IncrementResult result;
   result.worst_element = found.smallest_J_element;
   result.worst_J = found.smallest_J;

@@ -48,6 +48,7 @@ struct Run {
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
   /// False where the forces of the state that a run begins with are not finite; the outcome is explained then.
+  /// Otherwise materials with a history take it over, as if its strain had come at once just before.
   bool sound_start();
   /// Begins statics: refuses pushed bodies and passes the state without loads on; false if the observer wants to stop.
   bool start_at_rest();

@@ -58,6 +58,27 @@ TEST(Prony, RelaxesAsTheSeriesSays) {
     }
 }
 
+// Held where it begins, a body has the instantaneous stress first, that of the law itself, which then relaxes as G(t).
+TEST(Prony, RelaxesFromAnInitialDisplacement) {
+  for (const Integrator integrator :
+       {Integrator::quasi_static, Integrator::implicit_euler, Integrator::newmark, Integrator::generalized_alpha}) {
+    Model model = prony_model(CellKind::tet10, Strain::small);
+    model.settings.integrator = integrator;
+    model.initial_displacement = 0.01 * model.mesh->points;
+    Prescribed held{.name = "held", .nodes = points_where(*model.mesh, [](const Vec3&) { return true; })};
+    for (const int n : held.nodes) held.values.push_back(model.initial_displacement.row(n).transpose());
+    model.steps[0] = {.name = "hold", .dt = 0.05, .count = 4, .gravity = Vec3::Zero(), .prescribed = {held}};
+    const Outcome outcome = solve(model, [&](const State& state) {
+      const double t = state.time, share = 0.5 + 0.3 * std::exp(-t / 0.1) + 0.2 * std::exp(-t);
+      const double wanted = share * 0.01 * 1000 / (1 - 2 * 0.3);  // 3 k e with a strain of e in all directions
+      EXPECT_THAT(element_results(model, state).cauchy[0], ::testing::DoubleNear(wanted, 1e-9 * wanted))
+          << name(integrator) << " at " << t;
+      return true;
+    });
+    EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  }
+}
+
 TEST(Prony, InstantaneousAndLongTermLawsAreThoseGiven) {
   Model model = prony_model(CellKind::tet10, Strain::corotated);
   model.regions[0].prony.long_term = true;
