@@ -114,7 +114,7 @@ class LinearLaw final : public Law {
   bool exact_tangent() const override { return data_.strain == Strain::small || wants_exact(data_, Want::tangent); }
   bool small_strain() const override { return data_.strain == Strain::small; }
   /// The polar rotation jumps where a stretch changes sign.
-  bool survives_inversion() const override { return data_.strain == Strain::small; }
+  bool survives_inversion() const override { return data_.strain == Strain::small || data_.continued; }
   /// g = tr e, with modulus lambda.
   std::optional<Split> split() const override {
     return Split{.rest = std::make_shared<LinearLaw>(data_, Lame{lame_.mu, {}}),
@@ -194,7 +194,8 @@ Factory<std::shared_ptr<const Law>> linear_elastic_material() {
   material.note(
       "The corotated law is quadratic in the signed principal stretches, so that its continuation below clampedBelow "
       "is "
-      "the law itself: inversion = \"clamped\" changes nothing. Small strain has no stretches to clamp.");
+      "the law itself: with inversion = \"clamped\" the energy is the same, but states that are inside out are gone "
+      "through. Small strain has no stretches to clamp.");
   material.build([=](const Record& record) {
     if (record[inversion.inversion] == "clamped" && record[strain] == "small")
       throw Error(fmt::format("{}: inversion = \"clamped\" is about principal stretches, which strain = \"small\" does "
@@ -203,6 +204,7 @@ Factory<std::shared_ptr<const Law>> linear_elastic_material() {
                   record.where);
     LinearElastic data{.youngs_modulus = record[young], .poisson_ratio = record[poisson]};
     data.strain = record[strain] == "small" ? Strain::small : Strain::corotated;
+    data.continued = record[inversion.inversion] == "clamped";
     data.tangent = !record.has(tangent)           ? TangentKind::automatic
                    : record[tangent] == "rotated" ? TangentKind::rotated
                                                   : TangentKind::exact;

@@ -19,6 +19,7 @@ struct LinearElastic {
   /// Corotated only: exact = derivative of the stress; rotated = R K R^T, which leaves out dR/dF; automatic = exact,
   /// but rotated with one linear solve per step.
   TangentKind tangent = TangentKind::automatic;
+  bool continued = false;  ///< corotated: states that are inside out are gone through, where the rotation jumps
 };
 
 /// The law. With Lame's mu and lambda:

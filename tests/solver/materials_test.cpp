@@ -154,6 +154,8 @@ TEST(LinearElastic, IsItsOwnContinuationBelowAStretch) {
                                                     {"inversion", std::string("clamped")},
                                                     {"youngModulus", young},
                                                     {"poissonRatio", nu}});
+  EXPECT_TRUE(law->survives_inversion());
+  EXPECT_FALSE(make_linear_elastic({})->survives_inversion());
   const auto w = [&](double s) { return evaluate(*law, Vec3(1.1, 0.9, s).asDiagonal()).energy; };
   const double slope = (w(c + h) - w(c - h)) / (2 * h);
   for (const double s : {0.1, -0.2, -0.7})
