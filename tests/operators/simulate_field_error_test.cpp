@@ -5,6 +5,7 @@
 
 #include "tests/operators/shared/run_operator.hpp"
 #include "tests/operators/shared/shapes.hpp"
+#include "tests/operators/simulate_scene.hpp"
 
 namespace msml {
 namespace {
@@ -75,6 +76,24 @@ TEST(FieldError, AgreesWithItselfOnTheSameMesh) {
           "ComputeFieldError",
           {{"mesh", mesh}, {"referenceMesh", other}, {"field", std::string("heat")}, {"norm", std::string("RMS")}})),
       0.5, 1e-12);
+}
+
+// Between nodes x0 and x1 the slope of the interpolant of X^2 is x0 + x1. In cells of h against cells of h/4 the slopes
+// differ by h/4 times -3, -1, 1 and 3: sqrt(5)/4 h in the mean of squares.
+TEST(FieldError, ComparesGradientsWithThoseOnAFinerMesh) {
+  const auto squares = [](int n) {
+    Mesh mesh = test::box(n, n, n, 1.0 / n);
+    Field field{.name = "heat", .components = 1};
+    for (int k = 0; k < mesh.point_count(); ++k) field.values.push_back(mesh.points(k, 0) * mesh.points(k, 0));
+    mesh.point_fields = {field};
+    return std::make_shared<const Mesh>(std::move(mesh));
+  };
+  const double found = std::get<double>(test::run("ComputeFieldError", {{"mesh", squares(2)},
+                                                                        {"referenceMesh", squares(8)},
+                                                                        {"field", std::string("heat")},
+                                                                        {"norm", std::string("H1")},
+                                                                        {"relative", false}}));
+  EXPECT_NEAR(found, std::sqrt(5.0) / 4 * 0.5, 1e-9);
 }
 
 }  // namespace
