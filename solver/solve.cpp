@@ -47,7 +47,8 @@ std::string warning_of_imbalance(const Model& model, const Outcome& outcome) {
 /// Notes what the run holds beside what Newton's method has noted.
 void note_memory(const Run& run, Outcome& outcome) {
   const Motion& now = run.now;
-  std::size_t vectors = run.newton.forces().bytes() + bytes(run.pull_before) + bytes(run.damping_before);
+  std::size_t vectors =
+      run.newton.forces().bytes() + bytes(run.external_before) + bytes(run.reaction_before) + bytes(run.damping_before);
   for (const Vector* v : {&now.u, &now.v, &now.a, &now.reaction, &run.equations.positions()}) vectors += bytes(*v);
   for (const Points* p :
        {&outcome.state.displacement, &outcome.state.velocity, &outcome.state.acceleration, &outcome.state.reaction})

@@ -162,7 +162,10 @@ Factory<OutputRequest> energies() {
       "File: ID.csv with the columns time, elastic and kinetic energy, work of loads and moved supports, energy "
       "dissipated by damping and by viscoelastic regions (the work of their stresses that is not stored: by Maxwell's "
       "springs and dampers, exact for laws linear in their strain), momentum and angular momentum about the origin, "
-      "and in statics the share of the loads.");
+      "and in statics the share of the loads. Elastic, kinetic and dissipated energy sum to that of the first state "
+      "and "
+      "the work, but for what falls with the time step: with its square for Newmark, generalizedAlpha and undamped "
+      "centralDifference, in proportion to it for the others, and where loads or supports jump.");
   tag.build([=](const Record& record) {
     return OutputRequest{.id = file_stem(record, id),
                          .every = static_cast<int>(record[every]),

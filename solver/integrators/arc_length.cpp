@@ -185,7 +185,7 @@ bool advance(Arc& arc) {
   const double steps = run.model.settings.arc_length.steps;
   run.now.time += arc.path.duration / steps;
   ++run.now.increment;
-  run.set_reactions(run.newton.forces().residual(), arc.path.supports);
+  run.set_reactions(run.newton.forces().residual(), arc.path.supports, run.now.time);
   run.account(before);
   const Vector moved = result.u - before;
   if (run.now.increment > 1 && change * run.piece < 0)

@@ -132,13 +132,16 @@ struct Explicit {
         now.a[i] = (now.v[i] - before.v[i]) / dt;
       }
     now.time = loads.front().time = time;
+    Vector end = now.v;  // that of the middle of the step is what damps
+    Mask given(supports.fixed.size(), 0);
+    if (centred) supports.drive(time, 0, dt, end, now.a, given);
     balance(now.u, now.v, loads, supports, now.a);
     if (centred)
       for (Eigen::Index i = 0; i < target.size(); ++i)
-        if (!supports.fixed[static_cast<std::size_t>(i)]) now.v[i] += 0.5 * dt * now.a[i];
+        now.v[i] = supports.fixed[static_cast<std::size_t>(i)] ? end[i] : now.v[i] + 0.5 * dt * now.a[i];
     if (!sound(step, before, supports, loads)) return false;
     ++now.increment;
-    run.set_reactions(run.newton.forces().residual(), supports);
+    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
     run.equations.end_step(now.u);
     run.account(before.u);
     return true;
@@ -178,7 +181,7 @@ void run_explicit(Run& run) {
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();
     method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
-    run.set_reactions(run.newton.forces().residual(), supports);
+    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (!method.stable(step, supports.fixed, loads, 0)) return;

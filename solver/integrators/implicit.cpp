@@ -141,8 +141,9 @@ void keep(Stage& stage, const Trial& trial, double time, const Forces& start_for
   run.now.u = trial.result.u;
   run.now.v = trial.velocity;
   run.now.a = trial.acceleration;
+  const double balanced = run.now.time + trial.increment.motion.force_share * (time - run.now.time);
   run.now.time = time;
-  run.set_reactions(run.newton.residual(trial.increment), stage.supports);
+  run.set_reactions(run.newton.residual(trial.increment), stage.supports, balanced);
   if (blends(trial.increment.motion)) run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
   run.equations.end_step(run.now.u);
   run.account(before);
@@ -247,7 +248,7 @@ void run_implicit(Run& run) {
     if (s == 0) settle_pressures(run);
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
-    run.set_reactions(run.newton.forces().residual(), supports);
+    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (s == 0 && !run.accept()) return;

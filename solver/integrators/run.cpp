@@ -133,7 +133,8 @@ bool Run::accept() {
   return false;
 }
 
-void Run::set_reactions(const Vector& residual, const Supports& supports) {
+void Run::set_reactions(const Vector& residual, const Supports& supports, double time) {
+  reacted = time;
   const Vector across = supports.slides.removed(residual);
   for (Eigen::Index k = 0; k < residual.size(); ++k)
     now.reaction[k] = supports.fixed[static_cast<std::size_t>(k)] ? -residual[k] : -across[k];
@@ -141,7 +142,10 @@ void Run::set_reactions(const Vector& residual, const Supports& supports) {
 
 void Run::mark() {
   const Forces& forces = newton.forces();
-  pull_before = forces.external + now.reaction;
+  external_before = forces.external;
+  reaction_before = now.reaction;
+  marked = now.time;
+  reacted_before = reacted;
   damping_before = forces.damping;
   if (equations.has_history()) internal_before = forces.internal;
   tangled = forces.found.smallest_J < 0.1;
@@ -158,7 +162,10 @@ void Run::mark() {
 void Run::account(const Vector& u_before) {
   const Forces& forces = newton.forces();
   const Vector moved = now.u - u_before;
-  now.energies.external_work += 0.5 * dot(moved, pull_before + forces.external + now.reaction);
+  const double passed = reacted - reacted_before;
+  const double share = passed != 0 ? (0.5 * (marked + now.time) - reacted_before) / passed : 0.5;
+  now.energies.external_work += 0.5 * dot(moved, external_before + forces.external) +
+                                dot(moved, (1 - share) * reaction_before + share * now.reaction);
   now.energies.dissipated += 0.5 * dot(moved, damping_before + forces.damping);
   if (!equations.has_history()) return mark();
   const double work = 0.5 * dot(moved, internal_before + forces.internal), stored = now.energies.elastic;
