@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "msml/compile/literal.hpp"
 #include "msml/compile/work.hpp"
@@ -33,16 +34,53 @@ bool is_node(const Work& work, const std::string& name) {
   });
 }
 
+std::vector<std::string> node_names(const Work& work) {
+  std::vector<std::string> names;
+  for (const Node& node : work.out.graph.nodes) {
+    if (!node.id.empty()) names.push_back(node.id);
+    names.insert(names.end(), node.results.begin(), node.results.end());
+  }
+  return names;
+}
+
+/// The field of an error that a simulation writes: one of those that `result` knows, and given at nodes.
+void check_field(Work& work, const Measure& measure) {
+  const auto& nodes = work.out.graph.nodes;
+  const bool simulated = measure.of.empty() || std::any_of(nodes.begin(), nodes.end(), [&](const Node& node) {
+                           return std::find(node.results.begin(), node.results.end(), measure.of) != node.results.end();
+                         });
+  const Description* result = work.registry.find("result", {"output"});
+  const int slot = result == nullptr ? -1 : result->find("fields");
+  if (!simulated || slot < 0 || measure.field == "displacement") return;
+  const std::vector<std::string>& known = result->slots()[static_cast<std::size_t>(slot)].choices;
+  const auto knows = [&](const std::string& name) {
+    return std::find(known.begin(), known.end(), name) != known.end();
+  };
+  if (!knows(measure.field))
+    work.fault(measure.where, fmt::format("measure '{}': there is no field {}{}", measure.id,
+                                          quoted_value(measure.field), did_you_mean(measure.field, known)));
+  else if (knows(measure.field + "_nodal"))
+    work.fault(measure.where,
+               fmt::format("measure '{0}': the field {1} is given at elements, errors are those of nodes: "
+                           "take {1}_nodal",
+                           measure.id, measure.field));
+}
+
 void check_measure(Work& work, const Study& study, const Measure& measure) {
   if (!measure.of.empty() && !is_node(work, measure.of))
-    work.fault(measure.where, fmt::format("measure '{}': the scene has no task or output {}", quoted_value(measure.id),
-                                          quoted_value(measure.of)));
+    work.fault(measure.where,
+               fmt::format("measure '{}': the scene has no task or output {}{}", quoted_value(measure.id),
+                           quoted_value(measure.of), did_you_mean(measure.of, node_names(work))));
+  if (measure.quantity == Quantity::error) check_field(work, measure);
   static const std::set<std::string> times{"total", "own", "simulation", "step", "setup", "assembly", "linear"};
-  if (measure.quantity == Quantity::time && !times.contains(measure.what) && !is_node(work, measure.what))
+  if (measure.quantity == Quantity::time && !times.contains(measure.what) && !is_node(work, measure.what)) {
+    std::vector<std::string> names = node_names(work);
+    names.insert(names.end(), times.begin(), times.end());
     work.fault(measure.where,
                fmt::format("time = {} is none of total, own, simulation, step, setup, assembly, linear, and "
-                           "no task has this id",
-                           quoted_value(measure.what)));
+                           "no task has this id{}",
+                           quoted_value(measure.what), did_you_mean(measure.what, names)));
+  }
   if (measure.against_truth && !study.truth) work.fault(measure.where, "an error needs a <reference> in the study");
 }
 
@@ -83,6 +121,8 @@ void check_study(Work& work, const Study& study, const FaultSink& fault) {
     }
   if (study.truth)
     for (const auto& [name, value] : study.truth->set) check_variable(work, name, study.truth->where);
+  if (study.truth && !study.truth->file.empty() && !std::filesystem::exists(work.document.folder / study.truth->file))
+    work.fault(study.truth->where, fmt::format("file = {} does not exist", quoted_value(study.truth->file)));
   check_extrapolation(work, study);
   for (const Measure& measure : study.measures) {
     if (!columns.insert(measure.id).second)

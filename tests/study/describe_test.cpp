@@ -43,7 +43,8 @@ TEST(StudyLanguage, NamesThatDoNotExistAreFoundAtTheirLine) {
             "s.xml:5: measure 'n': the scene has no task or output n");
   EXPECT_EQ(
       study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure time=\"tota\"/>"),
-      "s.xml:5: time = tota is none of total, own, simulation, step, setup, assembly, linear, and no task has this id");
+      "s.xml:5: time = tota is none of total, own, simulation, step, setup, assembly, linear, and no task has this id "
+      "(did you mean 'total'?)");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><measure value=\"m\"/>\n<chart x=\"h\" y=\"mm\"/>"),
             "s.xml:5: y = mm is no column of the study (did you mean 'm'?); it has h, m, unknowns");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><measure value=\"m\"/>\n"
@@ -51,6 +52,8 @@ TEST(StudyLanguage, NamesThatDoNotExistAreFoundAtTheirLine) {
             "s.xml:5: group = kind is no variable of the study; it has h");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<reference set=\"k=1\"/>"),
             "s.xml:5: the scene has no variable k");
+  EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<reference file=\"nothere.vtu\"/>"),
+            "s.xml:5: file = nothere.vtu does not exist");
 }
 
 TEST(StudyLanguage, WhatMakesNoSenseIsRefusedBeforeAnythingRuns) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A scene with a study in, a table out.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sched.h>
 
@@ -179,6 +180,23 @@ TEST(StudyRun, TimesAreTakenFiveTimesUnlessTheyHaveTakenEnough) {
   const std::string vary = R"( <vary variable="E" values="1000"/> <measure time="total"/></study>)";
   EXPECT_EQ(run(R"(<study id="s">)" + vary, folder).table.number(0, "passes"), 5);
   EXPECT_EQ(run(R"(<study id="s" enough="1e-9">)" + vary, folder).table.number(0, "passes"), 1);
+}
+
+TEST(StudyRun, FieldsOfErrorsAreCheckedBeforeAnythingRuns) {
+  const auto faults_of = [](const std::string& field) {
+    std::vector<Fault> faults;
+    const Document document =
+        parse_document(bar("<study id=\"s\"><vary variable=\"E\" values=\"1\"/><reference set=\"n=2\"/><measure "
+                           "error=\"L2\" field=\"" +
+                           field + "\"/></study>"),
+                       "s.xml", faults);
+    return tiny::lines(compile(document, real_language()).faults);
+  };
+  EXPECT_EQ(faults_of("displacement"), "");
+  EXPECT_EQ(faults_of("stress_nodal"), "");
+  EXPECT_THAT(faults_of("displacment"),
+              testing::HasSubstr("there is no field displacment (did you mean 'displacement'?)"));
+  EXPECT_THAT(faults_of("stress"), testing::HasSubstr("take stress_nodal"));
 }
 
 TEST(StudyRun, SharedNodesCostARunNoTimeOfItsOwn) {
