@@ -34,7 +34,7 @@ struct Stage {
   const Supports& supports;
   double start;
   BlockMatrix& C;                         ///< damping beside alpha M that the time step is taken with
-  double size = 0;                        ///< largest displacement so far, root of the sum of squares
+  double size = 0;                        ///< largest displacement so far, see size_of()
   std::optional<BlockMatrix> C_end = {};  ///< the same at the end of the time step, see turns()
   bool C_end_current = false;             ///< it belongs to the end of the step that was tried last
   bool C_current = false;                 ///< C belongs to the present displacement
@@ -135,6 +135,11 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
   return trial;
 }
 
+/// Root of the sum of squares over the nodes of the body: pressures are no motion.
+double size_of(const Run& run, const Vector& motion) {
+  return motion.head(3 * run.equations.numbering().body_nodes()).norm();
+}
+
 void keep(Stage& stage, const Trial& trial, double time, const Forces& start_forces) {
   Run& run = stage.run;
   const Vector before = run.now.u;
@@ -149,7 +154,7 @@ void keep(Stage& stage, const Trial& trial, double time, const Forces& start_for
   run.account(before);
   if (stage.C_end_current) std::swap(stage.C.values, stage.C_end->values);
   stage.C_current = std::exchange(stage.C_end_current, false);
-  stage.size = std::max(stage.size, run.now.u.norm());
+  stage.size = std::max(stage.size, size_of(run, run.now.u));
   ++run.pieces;
 }
 
@@ -164,10 +169,15 @@ double error_of(const Stage& stage, const Trial& trial, double h) {
   const double beta = 1 / (trial.increment.motion.acceleration_factor * h * h);
   Vector missed = euler ? Vector(0.5 * h * h * trial.acceleration)
                         : Vector(h * h * (beta - 1.0 / 6) * (trial.acceleration - now.a));
+  const auto free_size = [&](Vector motion) {
+    for (Eigen::Index k = 0; k < motion.size(); ++k)
+      if (stage.supports.fixed[static_cast<std::size_t>(k)]) motion[k] = 0;
+    return size_of(stage.run, motion);
+  };
   const double dt = stage.step.dt;
-  const double size = std::max({stage.size, trial.result.u.norm(), dt * now.v.norm(),
-                                0.5 * dt * dt * free_norm(trial.acceleration, stage.supports.fixed)});
-  return size > 0 ? free_norm(missed, stage.supports.fixed) / (settings.step_tolerance * size) : 0;
+  const double size = std::max({stage.size, size_of(stage.run, trial.result.u), dt * size_of(stage.run, now.v),
+                                0.5 * dt * dt * free_size(trial.acceleration)});
+  return size > 0 ? free_size(std::move(missed)) / (settings.step_tolerance * size) : 0;
 }
 
 /// A step that failed: looks whether a shorter one from the same state does not, and says so.
@@ -252,7 +262,7 @@ void run_implicit(Run& run) {
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (s == 0 && !run.accept()) return;
-    Stage stage{run, step, supports, run.now.time, C, run.now.u.norm()};
+    Stage stage{run, step, supports, run.now.time, C, size_of(run, run.now.u)};
     for (int k = 1; k <= step.count; ++k)
       if (!advance(stage, stage.start + k * step.dt) || !run.accept()) return;
   }

@@ -283,6 +283,19 @@ TEST(MixedElements, KeepTheOrderOfNewmarkFromAnInitialDisplacement) {
   EXPECT_NEAR(std::log2((end[0] - end[1]).norm() / (end[1] - end[2]).norm()), 2, 0.1);
 }
 
+// Pressures have no inertia, so that what the method calls their acceleration means nothing and must not cut steps.
+TEST(MixedElements, TakeNoMoreAdaptiveStepsThanPlainOnes) {
+  int solves[2];
+  for (const bool plain : {false, true}) {
+    Model model = let_go(plain ? Formulation::standard : Formulation::mixed, 0.01, 2);
+    model.settings.adaptive_step = true;
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    solves[plain] = outcome.linear_solves;
+  }
+  EXPECT_LT(solves[0], 1.2 * solves[1]);  // on a coarse mesh both move a little differently
+}
+
 TEST(MixedElements, SayThatAnInitialDisplacementLeavesThePressureOfIncompressibleOnesOpen) {
   Model model = let_go(Formulation::mixed, 0.001, 1);
   model.regions[0].law = incompressible_rubber();
