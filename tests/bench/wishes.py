@@ -34,7 +34,8 @@ def static(lines, beside):
         newton = of(number("unit", n, work="neo"), number("solves", n, work="neo"))
         found.append((f"a Newton iteration beside a linear solve, n={n}", of(newton, number("unit", n)), 1.3))
     theirs = [entry["assembly"] for entry in beside
-              if (entry["peer"], entry["work"], entry["n"], entry["nu"]) == ("DOLFINx", "static", 8, 0.3)]
+              if (entry["peer"], entry["work"], entry["kind"], entry["n"], entry["nu"])
+              == ("DOLFINx", "static", "tet10", 8, 0.3)]
     found.append(("tangent of 15,360 tet10 beside DOLFINx", of(number("assembly", 8), min(theirs, default=None)), 0.25))
     iterations = [line["iterations"] for line in lines if line["work"] == "static" and line["iterations"] != ""]
     found.append(("iterations of a static solve, largest", max(iterations, default=None), 40))
