@@ -84,8 +84,7 @@ struct Explicit {
     outcome.stop = Stop::unstable_step;
     outcome.diagnosis = fmt::format(
         "step {} '{}' stopped at time {:g}: within {} time steps the motion grew beyond all numbers, as it does where "
-        "dt "
-        "= {:g} is above the stable step of {} ({:.4g} when last looked at; it falls where a body stiffens); take a "
+        "dt = {:g} is above the stable step of {} ({:.4g} when last looked at; it falls where a body stiffens); take a "
         "smaller dt (and more iterations), or an implicit timeIntegration",
         run.now.step + 1, step.name, run.now.time, run.now.increment, step.dt, name(run.model.settings.integrator),
         outcome.stable_step);

@@ -92,12 +92,11 @@ Flattest flattest_at(const Mesh& mesh, int point) {
   }
   return found;
 }
-constexpr double flat_shape = 1e-3;
-
 /// A stiffness that has fallen to this share of that at rest, with an indefinite one next to it, is on its way to zero;
 /// below the second it is nearly there.
 constexpr double soft = 0.3, vanishing = 0.1;
-constexpr double flat = 1e-6;  ///< an element of this share of its volume is crushed to nothing
+constexpr double flat = 1e-6;        ///< an element of this share of its volume is crushed to nothing
+constexpr double flat_shape = 1e-3;  ///< an element of this shape is bad, see flattest_at
 
 }  // namespace
 

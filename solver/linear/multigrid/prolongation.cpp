@@ -14,7 +14,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// A row of a block with C columns, and padding.
 template <int C>
-struct Lanes {
+struct BlockRow {
   Column<C> v{};
 };
 
@@ -29,12 +29,12 @@ double dot(const Column<6>& a, const Column<6>& b) {
 
 /// The rows of a block.
 template <int B, int C>
-void read(const float* block, Lanes<C>* rows) {
+void read(const float* block, BlockRow<C>* rows) {
   for (int i = 0; i < B; ++i)
     for (int j = 0; j < C; ++j) rows[i].v[j] = block[B * j + i];
 }
 template <int B, int C>
-void add(float factor, const Lanes<C>* rows, float* block) {
+void add(float factor, const BlockRow<C>* rows, float* block) {
   for (int j = 0; j < C; ++j)
     for (int i = 0; i < B; ++i) block[B * j + i] += factor * rows[i].v[j];
 }
@@ -43,7 +43,7 @@ void add(float factor, const Lanes<C>* rows, float* block) {
 template <int B, int C>
 class Columns {
  public:
-  using Room = std::vector<Lanes<C>>;
+  using Room = std::vector<BlockRow<C>>;
 
   Columns(const Blocks<float, B, B>& A, const std::vector<double>& inverse, const Modes& modes,
           const Sparsity& sparsity)
@@ -68,8 +68,8 @@ class Columns {
       for (int q = first(k); q < end(k); ++q) {
         const int position = place[at(sparsity_.columns[at(q)])];
         if (position < 0) continue;
-        const Lanes<C>* b = &X[B * at(q)];
-        Lanes<C>* c = &out[B * at(position)];
+        const BlockRow<C>* b = &X[B * at(q)];
+        BlockRow<C>* c = &out[B * at(position)];
         for (int i = 0; i < B; ++i) {
           Column<C> sum = c[i].v;
           for (int m = 0; m < B; ++m) sum += a[B * m + i] * b[m].v;
@@ -151,7 +151,8 @@ class Columns {
   void project(int n, Room& X) const {
     using Share = Eigen::Matrix<double, B, 6>;
     using Mode = Eigen::Map<const Eigen::Matrix<double, C, 6>>;
-    using Block = Eigen::Map<Eigen::Matrix<float, B, C, Eigen::RowMajor>, 0, Eigen::OuterStride<sizeof(Lanes<C>) / 4>>;
+    using Block =
+        Eigen::Map<Eigen::Matrix<float, B, C, Eigen::RowMajor>, 0, Eigen::OuterStride<sizeof(BlockRow<C>) / 4>>;
     Share sum = Share::Zero();
     // One coarse node alone is determined: no change, and no traces of round-off, which would be denormal numbers.
     if (end(n) == first(n) + 1) return for_row(n, [&](std::size_t k) { X[k].v = Column<C>{}; });
@@ -185,7 +186,7 @@ void lower_energy(const Blocks<float, B, B>& A, const std::vector<double>& inver
     columns.for_row(n, [&](std::size_t k) { G[k].v = -G[k].v; });
     return columns.preconditioned(n, G);
   });
-  std::fill(S.begin(), S.end(), Lanes<C>{});
+  std::fill(S.begin(), S.end(), BlockRow<C>{});
   float beta = 0;
   for (int s = 0; s < steps && rho > 0; ++s) {
     for_rows(columns.rows(), piece, [&](int n) { columns.turn(n, G, beta, S); });
