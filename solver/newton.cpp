@@ -229,6 +229,7 @@ IncrementResult Newton::run(const Increment& increment) {
   Vector& u = result.u;
   if (!std::isfinite(result.residuals.back())) return result.stop = not_finite(), result;
   if (!moved && limit > 1 && accepted(increment, result)) return result.stop = verdict(increment, result), result;
+  linear_->expect(increment.expected);
   Vector residual = free_residual(increment);
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);

@@ -16,6 +16,7 @@ struct Increment {
   const BlockMatrix* damping_matrix = nullptr;  ///< of the start of the step, beside alpha M; null without
   Vector offset = {};  ///< residual to end with: minus what the start of the step puts into the balance; empty: zero
   const Slides* slides = nullptr;  ///< nodes in planes; null: none
+  Vector expected = {};            ///< change of the displacement that is likely; empty: none
   double met = 0;                  ///< largest scale of the forces met on the way to `start`
 };
 

@@ -116,6 +116,9 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
                             &stage.supports.slides}};
   if (settings.integrator != Integrator::implicit_euler) follow(stage.supports, time, trial.increment.motion);
   trial.increment.offset = carried(trial.increment.motion, start_forces);
+  // Where the motion so far leads: the last steps of backward Euler on a line, Newmark's start of a step.
+  const bool euler = settings.integrator == Integrator::implicit_euler;
+  trial.increment.expected = h * run.now.v + (euler ? 1 : 0.5) * h * h * run.now.a;
   run.equations.begin_step(h);
   if (run.equations.has_history()) run.newton.forget();
   trial.result = reach(stage, trial);

@@ -15,6 +15,20 @@ void zero_fixed(const Mask& fixed, Vector& v) {
   });
 }
 
+void start_near(const BlockMatrix& A, const Mask& fixed, const Vector& b, const Vector& guess, Vector& r, Vector& x) {
+  r = b;
+  x = Vector::Zero(b.size());
+  if (guess.size() != b.size()) return;
+  Vector p = guess, q;
+  zero_fixed(fixed, p);
+  multiply(A, p, q);
+  zero_fixed(fixed, q);
+  const double curvature = dot(p, q), share = dot(p, b) / curvature;
+  if (!(curvature > 0) || !std::isfinite(share)) return;
+  x = share * p;
+  r -= share * q;
+}
+
 LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
                                  long limit, CgSpace& space, Vector& r, Vector& x, long& taken) {
   auto& [z, p, q] = space;

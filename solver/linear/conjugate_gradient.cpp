@@ -7,6 +7,7 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/linear/cg.hpp"
 
@@ -40,10 +41,10 @@ class ConjugateGradient final : public LinearSystem {
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     Vector b = right;
     zero_fixed(fixed_, b);
-    x = Vector::Zero(b.size());
+    Vector r;
+    start_near(*matrix_, fixed_, b, std::exchange(guess_, {}), r, x);
     const double target = tolerance * std::sqrt(dot(b, b));
     long limit = std::clamp<long>(10 * b.size(), 1000, 50000);
-    Vector r = b;
     double size = std::sqrt(dot(r, r));
     // The recurrence drifts from the true residual: measure it, and start again from it where needed.
     while (size > target) {
@@ -63,6 +64,7 @@ class ConjugateGradient final : public LinearSystem {
     return LinearStatus::done;
   }
 
+  void expect(const Vector& solution) override { guess_ = solution; }
   bool iterative() const override { return true; }
   std::size_t factor_bytes() const override {
     return inverse_.size() * sizeof(double) +
@@ -126,6 +128,7 @@ class ConjugateGradient final : public LinearSystem {
   Mask fixed_;
   LowerTriangle lower_;
   CgSpace space_;
+  Vector guess_;
   std::vector<double> inverse_;  ///< 9 per node
   Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>> incomplete_;
 };

@@ -78,6 +78,7 @@ class WithFallback final : public LinearSystem {
   WithFallback(const Settings& settings, std::unique_ptr<LinearSystem> first)
       : settings_(settings), active_(std::move(first)) {}
   void place(const Vector& displacement) override { active_->place(displacement); }
+  void expect(const Vector& solution) override { active_->expect(solution); }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
     matrix_ = &A;

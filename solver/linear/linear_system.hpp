@@ -41,6 +41,8 @@ class LinearSystem {
   /// The displacement (3 per node) that the next matrix belongs to; a help to solvers that keep what they made of an
   /// earlier one.
   virtual void place(const Vector& /*displacement*/) {}
+  /// A vector that the next solution is likely near a multiple of; iterations start from the best one.
+  virtual void expect(const Vector& /*solution*/) {}
   /// Looks once more, where factor() has not, whether the matrix taken last is positive definite.
   virtual LinearStatus probe() { return LinearStatus::done; }
   /// True if a solution costs more the smaller its tolerance is.

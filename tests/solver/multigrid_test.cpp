@@ -206,6 +206,34 @@ struct Stiffness {
   Mask fixed;
 };
 
+// What is expected is scaled, serves the next solution alone, and does no harm where it is of no use.
+TEST(ConjugateGradients, StartFromTheBestMultipleOfWhatIsExpected) {
+  const Stiffness beam(4, CellKind::tet4, 0.3);
+  const Vector b = Vector::LinSpaced(static_cast<Eigen::Index>(beam.fixed.size()), -1, 2);
+  for (const auto& system :
+       {make_multigrid(beam.equations.geometry()), make_conjugate_gradient(Preconditioner::jacobi)}) {
+    ASSERT_EQ(system->factor(beam.A, beam.fixed), LinearStatus::done);
+    const auto iterations = [&](const Vector& right, Vector& x) {
+      const long before = system->iterations;
+      EXPECT_EQ(system->solve(right, 1e-6, x), LinearStatus::done);
+      return system->iterations - before;
+    };
+    Vector x, again, other;
+    const long cold = iterations(b, x);
+    system->expect(-7 * x);
+    EXPECT_EQ(iterations(b, again), 0);
+    EXPECT_LT((again - x).norm(), 1e-12 * x.norm());
+    EXPECT_EQ(iterations(b, again), cold);
+    EXPECT_EQ(again, x);
+    system->expect(b);  // held unknowns are not to be moved
+    EXPECT_LE(iterations(b, other),
+              1.1 * static_cast<double>(cold) + 1);  // nearer in energy, but what is left is rougher
+    EXPECT_LT((other - x).norm(), 1e-4 * x.norm());
+    system->expect(Vector::Zero(b.size()));
+    EXPECT_EQ(iterations(b, again), cold);
+  }
+}
+
 double inner(const std::vector<float>& a, const std::vector<float>& b, std::size_t count) {
   double sum = 0;
   for (std::size_t k = 0; k < count; ++k) sum += static_cast<double>(a[k]) * b[k];

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <utility>
 
 #include "solver/linear/cg.hpp"
 #include "solver/linear/multigrid/multigrid.hpp"
@@ -23,6 +24,7 @@ class MultigridSolver final : public LinearSystem {
       : geometry_(geometry), grids_(geometry), pulse_(std::move(pulse)) {}
 
   void place(const Vector& displacement) override { displacement_ = displacement; }
+  void expect(const Vector& solution) override { guess_ = solution; }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
     matrix_ = &A;
@@ -37,10 +39,9 @@ class MultigridSolver final : public LinearSystem {
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     b_ = right;
     zero_fixed(fixed_, b_);
-    x = Vector::Zero(b_.size());
+    start_near(*matrix_, fixed_, b_, std::exchange(guess_, {}), r_, x);
     const double target = tolerance * std::sqrt(dot(b_, b_));
-    double size = std::sqrt(dot(b_, b_)), before = std::numeric_limits<double>::infinity();
-    r_ = b_;
+    double size = std::sqrt(dot(r_, r_)), before = std::numeric_limits<double>::infinity();
     while (size > target) {
       const double decades = std::max(1.0, std::log10(size / target));
       const long limit = fresh_ ? limit_fresh : static_cast<long>(2 * usual_ * decades) + 10;
@@ -163,7 +164,7 @@ class MultigridSolver final : public LinearSystem {
   double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve after the last set-up
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
-  Vector b_, r_;
+  Vector b_, r_, guess_;
   CgSpace space_;
   std::vector<float> single_r_, single_z_;
 };
