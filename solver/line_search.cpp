@@ -47,13 +47,21 @@ double Newton::residual_search(const Increment& increment, const Vector& directi
   const Vector start = u;
   const double norm = free_norm(residual, increment.fixed);
   const bool guarded = barrier_ && searching_ && forces_.found.smallest_J > 0 && !model_.settings.allow_inverted;
+  const Eigen::Index moved = 3 * equations_.numbering().body_nodes();
+  const double slope = direction.head(moved).dot(residual.head(moved));
   double step = 1;
   for (int trial = 0; trial < 10; ++trial, step *= 0.5) {
     u = start + step * direction;
     evaluate(increment, u, want_, false);
-    const double now = free_norm(free_residual(increment), increment.fixed);
+    const Vector left = free_residual(increment);
+    const double now = free_norm(left, increment.fixed);
     if (guarded && forces_.found.smallest_J <= 0) continue;
-    if (forces_.found.finite && std::isfinite(now) && (!searching_ || now <= (1 - 1e-4 * step) * norm)) return step;
+    if (!forces_.found.finite || !std::isfinite(now)) continue;
+    if (!searching_ || now <= (1 - 1e-4 * step) * norm) return step;
+    // A slender body that turns is stretched on the way, and its residual grows. With the pressures eliminated this is
+    // the slope of its energy along the step: near a minimum of that it is small.
+    const double new_slope = direction.head(moved).dot(left.head(moved));
+    if (slope > 0 && std::abs(new_slope) <= 0.8 * slope) return step;
   }
   return forces_.found.finite ? step : 0;
 }
