@@ -37,7 +37,7 @@ Mesh refined(const Surface& surface, const std::vector<Seed>& seeds, std::option
   const auto criteria = refine::criteria<Tr>(settings, watcher);
   C3t3 c3t3;
   if (feature_angle) {
-    announce("sharp edges");
+    announce("sharp edges", false);
     CGAL::Mesh_3::internal::init_c3t3_with_features(c3t3, domain, criteria, false);
   }
   refine::insert_seeds(c3t3, domain, seeds);

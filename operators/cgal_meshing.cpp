@@ -84,4 +84,14 @@ Watcher progress_in_points(Reporter& reporter, double volume, const MeshingSetti
   };
 }
 
+Announcer announce_passes(Reporter& reporter) {
+  return [&reporter](const std::string& pass, bool cut_short) {
+    if (!cut_short) return reporter.progress(0, pass);
+    reporter.warn(fmt::format(
+        "{} had not ended after {:g} s and was stopped: the mesh is valid, but may change with the machine's "
+        "speed. Leave that pass out, or choose larger cells",
+        pass, pass_patience));
+  };
+}
+
 }  // namespace msml::operators

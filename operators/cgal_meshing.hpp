@@ -21,8 +21,10 @@ struct MeshingSettings {
 
 /// Called now and then with the points placed so far, while refinement lasts.
 using Watcher = std::function<void(std::size_t points)>;
-/// Called with the name of each pass as it begins.
-using Announcer = std::function<void(const std::string& pass)>;
+/// Called with the name of each pass as it begins, and with `cut_short` once more where pass_patience ended it.
+using Announcer = std::function<void(const std::string& pass, bool cut_short)>;
+/// Seconds: on few points between protected edges exudation can go round for ever.
+constexpr double pass_patience = 120;
 
 /// A segment known to cross the surface: refinement starts from the crossing, unless a point is nearer than `clear`.
 struct Seed {
@@ -46,5 +48,7 @@ MeshingSettings meshing_settings(Context& context, const MeshingKeys& keys, doub
 /// A watcher that reports progress in points, out of an estimate from the volume of the body and the cell size. With a
 /// radius-edge bound below 2 it throws Error when there are 50 times as many (at least 100,000), so that nothing hangs.
 Watcher progress_in_points(Reporter& reporter, double volume, const MeshingSettings& settings);
+/// Reports each pass as progress, and as a warning where it was cut short.
+Announcer announce_passes(Reporter& reporter);
 
 }  // namespace msml::operators

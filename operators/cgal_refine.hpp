@@ -99,26 +99,24 @@ void refine_and_improve(C3t3& c3t3, const Domain& domain, const MeshCriteria& me
                         const Announcer& announce) {
   namespace p = CGAL::parameters;
   constexpr int smoothing_sweeps = 100;
-  constexpr double patience = 120;  // seconds: on few points between protected edges exudation can go round for ever
-  announce("refining");
+  const auto limited = [&](const std::string& pass, const auto& run) {
+    announce(pass, false);
+    if (run() == CGAL::TIME_LIMIT_REACHED) announce(pass, true);
+  };
+  announce("refining", false);
   CGAL::refine_mesh_3(c3t3, domain, mesh_criteria, p::no_reset_c3t3(), p::no_odt(), p::no_lloyd(), p::no_perturb(),
                       p::no_exude());
   if (s.odt) {
-    announce("odt");
+    announce("odt", false);
     CGAL::odt_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
   }
   if (s.lloyd) {
-    announce("lloyd");
+    announce("lloyd", false);
     CGAL::lloyd_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
   }
-  if (s.perturb) {
-    announce("perturbing");
-    CGAL::perturb_mesh_3(c3t3, domain, p::time_limit = patience);
-  }
-  if (s.exude) {
-    announce("exuding");
-    CGAL::exude_mesh_3(c3t3, p::time_limit = patience);
-  }
+  if (s.perturb)
+    limited("perturbing", [&] { return CGAL::perturb_mesh_3(c3t3, domain, p::time_limit = pass_patience); });
+  if (s.exude) limited("exuding", [&] { return CGAL::exude_mesh_3(c3t3, p::time_limit = pass_patience); });
 }
 
 /// The tetrahedra of the complex with the points they use; regions are subdomain indices.

@@ -63,8 +63,7 @@ Mesh fill(Context& c, const Surface& given, const MeshingKeys& keys, std::option
   const Vec3 extent = surface.points.colwise().maxCoeff() - surface.points.colwise().minCoeff();
   const MeshingSettings settings = meshing_settings(c, keys, extent.norm());
   const Watcher watcher = progress_in_points(c.reporter(), std::abs(enclosed_volume(surface)), settings);
-  Mesh mesh = fill_surface(surface, seeds_on(surface), feature_angle, settings, watcher,
-                           [&](const std::string& pass) { c.reporter().progress(0, pass); });
+  Mesh mesh = fill_surface(surface, seeds_on(surface), feature_angle, settings, watcher, announce_passes(c.reporter()));
   if (mesh.cell_count() == 0)
     throw Error(fmt::format("no tetrahedra: the body is too thin for facetSize = {}, facetDistance = {}, cellSize = {}",
                             settings.facet_size, settings.facet_distance, settings.cell_size));

@@ -31,7 +31,7 @@ std::vector<int> missing_parts(const LabelParts& parts, const Mesh& mesh, long m
 /// Meshes; where parts are missed, seeds them densely and meshes anew, at most twice.
 Mesh fill_every_part(const LabelParts& parts, long min_voxels, const MeshingSettings& settings, Reporter& reporter) {
   const Watcher watcher = progress_in_points(reporter, parts.volume, settings);
-  const Announcer announce = [&](const std::string& pass) { reporter.progress(0, pass); };
+  const Announcer announce = announce_passes(reporter);
   std::vector<Seed> seeds;
   const auto append = [&](const std::vector<Seed>& more) { seeds.insert(seeds.end(), more.begin(), more.end()); };
   for (const Part& part : parts.parts)
