@@ -139,6 +139,7 @@ struct CommandLine {
   }
 
   int run(const Registry& registry) {
+    study.versions = msml::library_versions();
     if (exec->parsed()) return msml::exec_command(registry, scene);
     if (check->parsed()) return msml::check_command(registry, scene);
     if (studies->parsed()) return msml::study_command(registry, study);

@@ -12,7 +12,9 @@
 
 #include "msml/core/atomic_file.hpp"
 #include "msml/run/interrupt.hpp"
+#include "msml/run/program.hpp"
 #include "msml/study/chart.hpp"
+#include "msml/study/columns.hpp"
 #include "msml/study/page.hpp"
 #include "msml/study/report.hpp"
 #include "msml/study/runner.hpp"
@@ -45,8 +47,8 @@ void print_row(const Study& study, const Table& table, std::size_t row) {
 
 Table earlier(const fs::path& file, bool fresh) { return fresh || !fs::exists(file) ? Table{} : read_csv(file); }
 
-void draw_charts(const Study& study, const Table& table, const fs::path& folder) {
-  ChartStyle style{column_labels(study), study.combine != Combine::latin_hypercube};
+void draw_charts(const Study& study, const Table& table, const Compilation& scene, const fs::path& folder) {
+  ChartStyle style{column_labels(study, table, scene), study.combine != Combine::latin_hypercube};
   for (const Chart& chart : study.charts) {
     try {
       if (const std::string problem = draw(table, chart, style, folder); !problem.empty())
@@ -102,9 +104,15 @@ class StudyRunner {
         },
         sharing);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    write_whole(options.folder / "results.json",
-                study_json(study, table, arguments_.scene.scene, compilation_.graph.units, options, sharing, seconds));
-    draw_charts(study, table, options.folder);
+    const Session session{.scene = compilation_,
+                          .given = compile_options_,
+                          .options = options,
+                          .fresh = arguments_.fresh,
+                          .versions = versions(),
+                          .sharing = sharing,
+                          .seconds = seconds};
+    write_whole(options.folder / "results.json", study_json(study, table, session));
+    draw_charts(study, table, compilation_, options.folder);
     write_page(study, table, options, sharing, seconds);
     if (!arguments_.scene.quiet)
       std::fprintf(stderr, "study %s: %s, %zu nodes computed, %zu taken from other runs; see %s\n", study.id.c_str(),
@@ -126,6 +134,14 @@ class StudyRunner {
       if (runs[i].scene) line += fmt::format(": {} nodes, {} of them new", nodes, own);
       std::puts(line.c_str());
     }
+  }
+
+  /// Of the libraries, and of the program that draws.
+  std::map<std::string, std::string> versions() const {
+    std::map<std::string, std::string> all = arguments_.versions;
+    const std::string gnuplot = program_output({"gnuplot", "--version"});
+    all["gnuplot"] = gnuplot.empty() ? "not installed" : gnuplot;
+    return all;
   }
 
   static std::string timing(const Study& study) {

@@ -10,6 +10,7 @@ struct StudyArguments {
   SceneArguments scene;  ///< the output folder holds one folder per study
   std::string name;      ///< the study to run; "": all of the scene
   bool html = false, fresh = false, keep = false, no_sharing = false;
+  std::map<std::string, std::string> versions;  ///< of the libraries, for the record
 };
 
 /// Runs the studies of a scene and writes their tables, charts and pages. 0, or 2 for a scene with faults. A run

@@ -19,6 +19,11 @@ void sort_by_place(std::vector<Fault>& faults) {
   std::erase_if(faults, [&](const Fault& fault) { return !seen.insert({fault.where.line, fault.str()}).second; });
 }
 
+void keep_variables(Work& work) {
+  for (const auto& [name, named] : work.scope)
+    if (named.kind == Named::Kind::variable) work.out.variables[name] = {named.variable.value, named.variable.unit};
+}
+
 void note_unused(Work& work) {
   for (const auto& [name, named] : work.scope)
     if (named.kind == Named::Kind::variable && !named.variable.used)
@@ -55,6 +60,7 @@ void run_passes(Work& work, const Tag& root) {
   read_units(work, root);
   check_holders(work, root);
   read_studies(work, root);
+  keep_variables(work);
   note_unused(work);
   order_nodes(work);
   examine_nodes(work);

@@ -19,10 +19,17 @@ struct CompileOptions {
   bool strict = false;                        ///< warnings about old scenes are faults
 };
 
+/// A variable of the scene.
+struct VariableInForce {
+  std::string value;  ///< its text, that of the command line where one was given
+  std::string unit;   ///< of the attribute that it fills, such as "stress" or "1"; "" where none is known
+};
+
 /// The graph, or every fault of the scene, sorted by line. The graph is complete only if there are no faults.
 struct Compilation {
   Graph graph;
   std::vector<Study> studies;  ///< what `msml study` may run
+  std::map<std::string, VariableInForce> variables;
   std::vector<Fault> faults, warnings, notes;
 };
 

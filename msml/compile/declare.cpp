@@ -175,7 +175,7 @@ void declare_variables(Work& work, const Tag& variables) {
   for (const Tag& tag : variables.children) {
     Named named{.kind = Named::Kind::variable, .where = tag.element->where};
     const Binding binding = bind_attributes(work, tag);
-    named.variable = {text_of(binding, keys.value), text_of(binding, keys.logical), tag.element->where, false};
+    named.variable = {text_of(binding, keys.value), text_of(binding, keys.logical), tag.element->where, false, {}};
     const std::string name = text_of(binding, keys.name);
     if (!name.empty() && !usable_name(name))
       work.fault(tag.element->where,

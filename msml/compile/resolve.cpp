@@ -153,6 +153,16 @@ bool has_file(const Node& node, int slot) {
   return std::any_of(node.targets.begin(), node.targets.end(), [slot](const Target& t) { return t.output == slot; });
 }
 
+/// A number without a unit is counted in "1" until the variable fills an attribute that has one.
+void note_unit(Variable& variable, const Slot& slot) {
+  if (!variable.unit.empty() && variable.unit != "1") return;
+  const bool number = slot.type == Type::number || slot.type == Type::integer;
+  if (!slot.unit.empty())
+    variable.unit = slot.unit;
+  else if (number)
+    variable.unit = "1";
+}
+
 }  // namespace
 
 std::string owner(const Binding& user) {
@@ -226,6 +236,7 @@ Source resolve(Work& work, const Binding& user, const Slot& slot, const std::str
     if (found == work.scope.end() || found->second.kind != Named::Kind::variable)
       return resolve_reference(work, user, slot, parts.front().text, where);
     found->second.variable.used = true;
+    note_unit(found->second.variable, slot);
     logical = found->second.variable.logical;
     from = found->second.variable.where;
     current = found->second.variable.value;

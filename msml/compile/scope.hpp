@@ -14,6 +14,7 @@ struct Variable {
   std::string value, logical;
   Location where;
   bool used = false;
+  std::string unit;  ///< of the attribute that it alone fills, the first with a unit; "1" for a plain number
 };
 
 /// What a name stands for. Variables, tasks and scene outputs share one scope.

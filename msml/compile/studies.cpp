@@ -9,6 +9,7 @@
 #include "msml/compile/literal.hpp"
 #include "msml/compile/work.hpp"
 #include "msml/study/expand.hpp"
+#include "msml/study/units.hpp"
 
 namespace msml {
 namespace {
@@ -66,6 +67,33 @@ void check_field(Work& work, const Measure& measure) {
                            measure.id, measure.field));
 }
 
+/// The binding with an id in a tree of bindings, or null.
+const Binding* find_binding(const Binding& binding, const std::string& id) {
+  if (binding.id == id) return &binding;
+  for (const Binding& child : binding.children)
+    if (const Binding* found = find_binding(child, id)) return found;
+  return nullptr;
+}
+
+/// The unit of a number that stands in no description of the measure itself: of a field, or of a task's output.
+std::string unit_of(const Work& work, const Measure& measure) {
+  if (measure.quantity == Quantity::error) return field_unit(measure.field);
+  const std::size_t dot = measure.of.find('.');
+  for (const Node& node : work.out.graph.nodes) {
+    if (measure.quantity == Quantity::probe) {
+      const Binding* probe = find_binding(node.args, measure.of);
+      const int slot = probe ? probe->description->find("field") : -1;
+      const auto* value = slot < 0 ? nullptr : std::get_if<Value>(&probe->sources[static_cast<std::size_t>(slot)]);
+      if (const auto* field = value ? std::get_if<std::string>(value) : nullptr) return field_unit(*field);
+    } else if (node.id == measure.of.substr(0, dot) && node.op) {
+      const int slot =
+          dot == std::string::npos ? node.op->first_output() : node.op->find(measure.of.substr(dot + 1), true);
+      if (slot >= 0) return node.op->slots()[static_cast<std::size_t>(slot)].unit;
+    }
+  }
+  return {};
+}
+
 void check_measure(Work& work, const Study& study, const Measure& measure) {
   if (!measure.of.empty() && !is_node(work, measure.of))
     work.fault(measure.where,
@@ -111,7 +139,7 @@ void check_extrapolation(Work& work, const Study& study) {
              fmt::format("extrapolate = {}: no <vary> gives this variable three values or more", quoted_value(name)));
 }
 
-void check_study(Work& work, const Study& study, const FaultSink& fault) {
+void check_study(Work& work, Study& study, const FaultSink& fault) {
   std::set<std::string> columns{"unknowns", "status", "passes", "warnings", "reason", "key", share_column};
   for (const Vary& vary : study.vary)
     for (const std::string& name : vary.variables) {
@@ -128,6 +156,10 @@ void check_study(Work& work, const Study& study, const FaultSink& fault) {
     if (!columns.insert(measure.id).second)
       fault(measure.where, fmt::format("two columns are called {}: give one an id", quoted_value(measure.id)));
     check_measure(work, study, measure);
+  }
+  for (Measure& measure : study.measures) {
+    measure.value_unit = unit_of(work, measure);
+    if (measure.unit.empty()) measure.unit = measure.value_unit;
   }
   for (const Chart& chart : study.charts) check_chart(work, study, chart);
   expand(study, fault);

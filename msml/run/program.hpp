@@ -11,4 +11,7 @@ namespace msml {
 /// or is ended by a signal. What it says goes to /dev/null.
 int run_program(const std::vector<std::string>& words, const std::filesystem::path& folder = {});
 
+/// The first line that a program says, or "" if it cannot be started or fails.
+std::string program_output(const std::vector<std::string>& words);
+
 }  // namespace msml

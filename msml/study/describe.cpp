@@ -180,6 +180,7 @@ Part<Measure> measure_tag() {
                 .field = record[k.field],
                 .of = text_of(record, k.of),
                 .unit = "",
+                .value_unit = "",
                 .where = record.where};
       m.relative = record[k.relative];
       if (choose_quantity(record, k, m) != 1)

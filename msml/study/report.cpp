@@ -9,7 +9,11 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
+
+#include "msml/study/columns.hpp"
+#include "msml/study/keys.hpp"
 
 namespace msml {
 namespace {
@@ -33,35 +37,101 @@ Json row_json(const Table& table, std::size_t row) {
   return json;
 }
 
-Json definition(const Study& study) {
-  const auto texts = [](const Settings& settings) {
-    Json json = Json::object();
-    for (const auto& [name, value] : settings) json[name] = value;
-    return json;
-  };
-  constexpr const char* combinations[] = {"product", "zip", "latinHypercube"};
-  Json json{{"combine", combinations[static_cast<std::size_t>(study.combine)]}};
-  if (study.samples > 0) json["samples"] = study.samples, json["seed"] = study.seed;
-  json["vary"] = Json::array();
-  for (const Vary& each : study.vary) {
-    Json vary{{"variables", each.variables}};
-    if (each.values.empty())
-      vary.update({{"from", each.from}, {"to", each.to}, {"log", each.log}, {"whole", each.whole}});
-    else
-      vary["values"] = each.values;
-    json["vary"].push_back(vary);
-  }
-  if (study.truth) {
-    json["reference"] = {
-        {"set", texts(study.truth->set)}, {"file", study.truth->file}, {"extrapolate", study.truth->extrapolate}};
-    for (const Formula& formula : study.truth->expected)
-      json["reference"]["expected"].push_back(formula.constant() ? Json(formula.number) : Json(formula.text));
-  }
-  json["measures"] = Json::array();
-  for (const Measure& each : study.measures)
-    json["measures"].push_back(
-        {{"id", each.id}, {"what", each.what}, {"field", each.field}, {"of", each.of}, {"relative", each.relative}});
+Json texts(const Settings& settings) {
+  Json json = Json::object();
+  for (const auto& [name, value] : settings) json[name] = value;
   return json;
+}
+
+Json texts(const std::map<std::string, std::string>& map) { return texts(Settings(map.begin(), map.end())); }
+
+Json formulas_json(const Formulas& formulas) {
+  Json json = Json::array();
+  for (const Formula& formula : formulas)
+    json.push_back(formula.constant() ? Json(formula.number) : Json(formula.text));
+  return json;
+}
+
+Json vary_json(const Vary& each) {
+  Json json{{"variables", each.variables}};
+  if (each.values.empty())
+    json.update({{"from", each.from}, {"to", each.to}, {"log", each.log}, {"whole", each.whole}});
+  else
+    json["values"] = each.values;
+  return json;
+}
+
+Json measure_json(const Measure& each) {
+  constexpr const char* quantities[] = {"error", "time", "memory", "iterations", "probe", "value", "energy"};
+  return {{"id", each.id},
+          {"quantity", quantities[static_cast<std::size_t>(each.quantity)]},
+          {"what", each.what},
+          {"field", each.field},
+          {"of", each.of},
+          {"againstReference", each.against_truth},
+          {"relative", each.relative},
+          {"unit", each.unit}};
+}
+
+Json chart_json(const Chart& chart) {
+  return {{"id", chart.id},
+          {"title", chart.title},
+          {"x", chart.x},
+          {"y", chart.y},
+          {"group", chart.group},
+          {"only", texts(chart.only)},
+          {"logX", chart.axes.log_x},
+          {"logY", chart.axes.log_y},
+          {"slopes", chart.slopes},
+          {"color", chart.color},
+          {"accurate", chart.accurate},
+          {"wrong", chart.wrong},
+          {"theory", formulas_json(chart.theory)},
+          {"limits", chart.limits}};
+}
+
+Json definition(const Study& study) {
+  constexpr const char* combinations[] = {"product", "zip", "latinHypercube"};
+  Json json{{"title", study.title}, {"combine", combinations[static_cast<std::size_t>(study.combine)]}};
+  if (study.combine == Combine::latin_hypercube) json["samples"] = study.samples, json["seed"] = study.seed;
+  json["repetitions"] = study.repetitions();
+  json["enough"] = study.enough > 0 ? Json(study.enough) : Json();
+  json["limit"] = study.limit > 0 ? Json(study.limit) : Json();
+  for (const Vary& each : study.vary) json["vary"].push_back(vary_json(each));
+  if (study.truth)
+    json["reference"] = {{"set", texts(study.truth->set)},
+                         {"file", study.truth->file},
+                         {"extrapolate", study.truth->extrapolate},
+                         {"expected", formulas_json(study.truth->expected)},
+                         {"time", study.truth->time}};
+  for (const Measure& each : study.measures) json["measures"].push_back(measure_json(each));
+  json["charts"] = Json::array();
+  for (const Chart& each : study.charts) json["charts"].push_back(chart_json(each));
+  return json;
+}
+
+/// A hash of what a file holds, "" where it cannot be read.
+std::string hash_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return in ? hash(text.str()) : "";
+}
+
+/// What was read from disk, by name.
+Json inputs(const Study& study, const Graph& graph) {
+  Json json = Json::object();
+  for (const Node& node : graph.nodes)
+    if (node.kind == NodeKind::file) json[node.file.string()] = hash_of(node.file);
+  if (study.truth && !study.truth->file.empty()) json[study.truth->file] = hash_of(graph.folder / study.truth->file);
+  return json;
+}
+
+Json command_line(const Session& session) {
+  return {{"set", texts(session.given.set)},    {"outputFolder", session.given.output_folder.string()},
+          {"strict", session.given.strict},     {"jobs", session.options.jobs},
+          {"threads", session.options.threads}, {"sharing", session.options.share},
+          {"keep", session.options.keep},       {"fresh", session.fresh}};
 }
 
 }  // namespace
@@ -74,60 +144,27 @@ std::string machine() {
                      memory / 1e9, system.sysname, system.release);
 }
 
-std::map<std::string, std::string> column_units(const Study& study) {
-  std::map<std::string, std::string> units{{"unknowns", "1"}, {"passes", "1"}};
-  for (const Measure& m : study.measures) {
-    units[m.id] = m.unit;
-    if (m.quantity == Quantity::time) units[m.id + "_low"] = units[m.id + "_high"] = m.unit;
-  }
-  return units;
-}
-
-std::map<std::string, std::string> column_labels(const Study& study) {
-  std::map<std::string, std::string> labels{{share_column, "share of all runs"}};
-  for (const Measure& m : study.measures) {
-    std::string& label = labels[m.id];
-    const std::string relative = m.relative ? "relative " : "";
-    if (m.quantity == Quantity::error)
-      label = fmt::format("{}{} error of {}", relative, m.what, m.field);
-    else if (m.quantity == Quantity::probe && m.against_truth)
-      label = fmt::format("{}error at {}", relative, m.of);
-    else if (m.quantity == Quantity::probe)
-      label = fmt::format("{} ({}{}{} at the end)", m.id, m.what, m.what.empty() ? "" : " of ", m.of);
-    else if (m.quantity == Quantity::energy)
-      label = fmt::format("{}: energy made or lost, relative", m.id);
-    else if (m.quantity == Quantity::memory)
-      label = fmt::format("memory: {} [bytes]", m.what);
-    else if (m.quantity == Quantity::iterations)
-      label = m.what == "cg" ? "iterations of conjugate gradients" : fmt::format("{} iterations", m.what);
-    else if (m.quantity == Quantity::time)
-      label = m.what == "step"    ? "time of one step [s]"
-              : m.what == "total" ? "time of all nodes [s]"
-              : m.what == "own"   ? "time of nodes that are not shared [s]"
-                                  : fmt::format("time of {} [s]", m.what);
-    else
-      label = m.unit.empty() || m.unit == "1" ? m.id : fmt::format("{} [{}]", m.id, m.unit);
-  }
-  return labels;
-}
-
-std::string study_json(const Study& study, const Table& table, const std::string& scene, const std::string& units,
-                       const StudyOptions& options, const Sharing& sharing, double seconds) {
+std::string study_json(const Study& study, const Table& table, const Session& session) {
+  const Graph& graph = session.scene.graph;
+  std::map<std::string, std::string> versions = session.versions;
+  versions["msml"] = MSML_VERSION;
   Json json{{"program", "msml"},
             {"version", MSML_VERSION},
+            {"versions", texts(versions)},
             {"study", study.id},
-            {"scene", scene},
+            {"scene", graph.scene},
+            {"sceneHash", hash_of(graph.scene)},
+            {"inputs", inputs(study, graph)},
+            {"commandLine", command_line(session)},
             {"machine", machine()},
-            {"threads", options.threads},
-            {"repetitions", study.repetitions()},
-            {"enough", study.enough > 0 ? Json(study.enough) : Json()},
-            {"limit", study.limit > 0 ? Json(study.limit) : Json()},
-            {"seconds", seconds},
-            {"nodesComputed", sharing.computed},
-            {"nodesShared", sharing.shared}};
-  if (!units.empty()) json["units"] = units;
-  for (const auto& [column, unit] : column_units(study)) json["columnUnits"][column] = unit;
+            {"seconds", session.seconds},
+            {"nodesComputed", session.sharing.computed},
+            {"nodesShared", session.sharing.shared},
+            {"units", graph.units}};
+  for (const auto& [name, variable] : session.scene.variables) json["variablesInForce"][name] = variable.value;
   json["variables"] = study.variables();
+  json["columnUnits"] = texts(column_units(study, table, session.scene));
+  json["columnLabels"] = texts(column_labels(study, table, session.scene));
   json["definition"] = definition(study);
   json["rows"] = Json::array();
   for (std::size_t row = 0; row < table.rows.size(); ++row) json["rows"].push_back(row_json(table, row));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The results of a study as JSON, with the machine they were taken on.
+// The results of a study as JSON, with all that is needed to take them again.
 #pragma once
 #include <map>
 #include <string>
 
+#include "msml/compile/compile.hpp"
 #include "msml/study/runner.hpp"
 
 namespace msml {
@@ -11,14 +12,20 @@ namespace msml {
 /// "AMD EPYC 7763, 2 processors, 16.4 GB, Linux 6.1": what timings depend on.
 std::string machine();
 
-/// Units by column: "s" and "bytes" of measures.
-std::map<std::string, std::string> column_units(const Study& study);
+/// What a session ran, and how.
+struct Session {
+  const Compilation& scene;  ///< the scene as the command line set it
+  CompileOptions given;      ///< what the command line says of it
+  StudyOptions options;
+  bool fresh = false;                           ///< rows of earlier sessions do not count
+  std::map<std::string, std::string> versions;  ///< of the libraries, by name
+  Sharing sharing;
+  double seconds = 0;
+};
 
-/// What stands at the axes of charts: "relative RMS error of displacement", "time of one step [s]".
-std::map<std::string, std::string> column_labels(const Study& study);
-
-/// Study, scene, units, settings, versions, machine, and one object per row with numbers as numbers.
-std::string study_json(const Study& study, const Table& table, const std::string& scene, const std::string& units,
-                       const StudyOptions& options, const Sharing& sharing, double seconds);
+/// The definition of the study, the session (scene and input files with hashes of what they hold, variables in force,
+/// the choices of the command line, versions, machine, units and labels of every column), and one object per row with
+/// numbers as numbers.
+std::string study_json(const Study& study, const Table& table, const Session& session);
 
 }  // namespace msml

@@ -90,6 +90,11 @@ double median(std::vector<double> values) {
 
 std::string digits(double x) { return fmt::format("{:.10g}", x); }
 
+/// Times of another number of threads, or taken without sharing, are not those that are asked for.
+std::string key_of(const StudyRun& run, const Study& study, const StudyOptions& options) {
+  return study.timed() ? fmt::format("{}-{}{}", run.key, options.threads, options.share ? "" : "-apart") : run.key;
+}
+
 class Runner {
  public:
   Runner(const Study& study, const Registry& registry, const StudyOptions& options, SharedResults& results)
@@ -198,7 +203,7 @@ class Runner {
     cells.push_back(row.warnings);
     cells.push_back(row.recovered);
     cells.push_back(row.reason);
-    cells.push_back(run.key);
+    cells.push_back(key_of(run, study_, options_));
     return cells;
   }
 
@@ -262,7 +267,7 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
   std::vector<std::size_t> open;
   SharedResults results;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (const auto* row = known_row(known, table.columns, runs[i].key))
+    if (const auto* row = known_row(known, table.columns, key_of(runs[i], study, options)))
       table.rows[i] = *row;
     else
       open.push_back(i), results.expect(all_used(runs[i]));

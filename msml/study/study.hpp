@@ -45,7 +45,8 @@ struct Measure {
   bool relative = true;
   bool against_truth = false;  ///< of a probe: its error
   bool extrapolated = false;   ///< its error is found once all runs are over; ID_value holds the number itself
-  std::string unit;            ///< "s", "bytes", "1" or ""
+  std::string unit;            ///< of the column: "s", "bytes", "1", "length", …
+  std::string value_unit;      ///< of the number itself, where the column is its error
   Location where;
 };
 

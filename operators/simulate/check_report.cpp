@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "operators/registry.hpp"
 #include "operators/simulate/records.hpp"
 
 namespace msml::simulation {
@@ -185,10 +186,9 @@ std::string check_json(const Simulation& simulation, const fe::Outcome& outcome,
 
 std::string settings_json(const Simulation& simulation) {
   const fe::Settings& settings = simulation.model.settings;
-  const Json json{{"versions",
-                   {{"msml", MSML_VERSION},
-                    {"eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
-                    {"compiler", __VERSION__}}},
+  Json versions{{"msml", MSML_VERSION}};
+  for (const auto& [library, version] : library_versions()) versions[library] = version;
+  const Json json{{"versions", versions},
                   {"mesh", simulation.body.mesh->summary()},
                   {"elements", msml::name(simulation.body.kind)},
                   {"timeIntegration", fe::name(settings.integrator)},

@@ -2,8 +2,11 @@
 // Sets the threads of OpenBLAS and OpenMP.
 #include "solver/linear/blas_threads.hpp"
 
+#include "solver/linear/versions.hpp"
+
 extern "C" {
 void openblas_set_num_threads(int threads);
+char* openblas_get_config(void);
 void omp_set_max_active_levels(int levels);
 }
 
@@ -23,5 +26,7 @@ BlasThreads::BlasThreads(int threads) : lock_(one_at_a_time()) {
 }
 
 BlasThreads::~BlasThreads() { openblas_set_num_threads(1); }
+
+std::string openblas_version() { return openblas_get_config(); }
 
 }  // namespace msml::fe

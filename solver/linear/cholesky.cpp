@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Sparse Cholesky factorisation by CHOLMOD: analysed once per set of fixed unknowns, refactored for new values.
 #include <cholmod.h>
+#include <fmt/format.h>
 
 #include "solver/linear/blas_threads.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "solver/linear/versions.hpp"
 
 namespace msml::fe {
 namespace {
@@ -125,6 +127,11 @@ class Cholesky final : public LinearSystem {
 
 std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory) {
   return std::make_unique<Cholesky>(threads, memory);
+}
+
+std::string suitesparse_version() {
+  return fmt::format("{}.{}.{} (CHOLMOD {}.{}.{})", SUITESPARSE_MAIN_VERSION, SUITESPARSE_SUB_VERSION,
+                     SUITESPARSE_SUBSUB_VERSION, CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION);
 }
 
 }  // namespace msml::fe

@@ -7,6 +7,7 @@
 
 #include "solver/linear/blas_threads.hpp"
 #include "solver/linear/linear_system.hpp"
+#include "solver/linear/versions.hpp"
 
 namespace msml::fe {
 namespace {
@@ -185,5 +186,7 @@ class Mumps final : public LinearSystem {
 
 std::unique_ptr<LinearSystem> make_indefinite(int threads) { return std::make_unique<Mumps>(true, threads); }
 std::unique_ptr<LinearSystem> make_unsymmetric(int threads) { return std::make_unique<Mumps>(false, threads); }
+
+std::string mumps_version() { return MUMPS_VERSION; }
 
 }  // namespace msml::fe

@@ -11,31 +11,12 @@
 
 #include "msml/study/runner.hpp"
 #include "tests/commands/real_language.hpp"
+#include "tests/study/bar.hpp"
 
 namespace msml {
 namespace {
 
-/// A bar under its own weight, with a study on line 2 … of `studies`.
-std::string bar(const std::string& studies) {
-  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/><var name="low" value="-9"/></variables>
-<workflow>
-  <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" when="${kind} = tet4"/>
-  <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" quadratic="true" when="${kind} = tet10"/>
-  <ComputeIndicesFromBoxROI id="all" mesh="${mesh}" select="elements" box="-9 -9 -9 9 9 9"/>
-  <ComputeIndicesFromBoxROI id="base" mesh="${mesh}" select="points" box="-9 -9 ${low} 9 9 1e-6"/>
-</workflow>
-<scene><object id="bar">
-  <mesh> <linearTet mesh="${mesh}" when="${kind} = tet4"/> <quadraticTet mesh="${mesh}" when="${kind} = tet10"/> </mesh>
-  <material><region indices="${all}"> <linearElasticMaterial youngModulus="${E}" poissonRatio="0" strain="small"/>
-    <mass massDensity="1"/> </region></material>
-  <constraints><constraint> <fixedConstraint indices="${base}"/> </constraint></constraints>
-  <output> <displacement id="u"/> <probe id="tip" point="2 2 4" field="displacement"/> </output>
-</object></scene>
-<environment><solver timeIntegration="static" linearSolver="direct"/>
-  <simulation><step gravity="0 0 -10"/></simulation></environment>
-<studies>)" +
-         studies + "</studies></msml>";
-}
+using studies::bar;
 
 struct Ran {
   Table table;

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// results.json: what was run, with what, and what its numbers mean.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "msml/commands/study.hpp"
+#include "msml/study/table.hpp"
+#include "msml/study/units.hpp"
+#include "tests/commands/real_language.hpp"
+#include "tests/study/bar.hpp"
+
+namespace msml {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
+
+/// Runs the one study `s` of a scene as the command does, and returns its results.json.
+Json run(const fs::path& scene, const std::vector<std::string>& set = {}, int threads = 1) {
+  StudyArguments arguments{.scene = {.scene = scene.string(), .output_folder = (scene.parent_path() / "out").string()},
+                           .name = ""};
+  arguments.scene.set = set;
+  arguments.scene.threads = threads;
+  arguments.scene.quiet = true;
+  arguments.versions = library_versions();
+  EXPECT_EQ(study_command(real_language(), arguments), 0);
+  return Json::parse(content(scene.parent_path() / "out" / "s" / "results.json"), nullptr, false);
+}
+
+constexpr const char* two_runs = R"(<study id="s"> <vary variable="n" values="1 2"/> <vary variable="E" values="1000"/>
+  <reference set="n=3"/> <measure probe="tip" component="z"/> <measure id="off" error="RMS" relative="false"/>
+  <measure id="rest" probe="tip" error="RMS"/> <measure memory="matrix"/></study>)";
+
+TEST(StudyRecord, HoldsWhatIsNeededToRunItAgain) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml";
+  write(scene, studies::bar(two_runs));
+  const Json first = run(scene, {"kind=tet10"});
+  EXPECT_EQ(first["commandLine"]["set"], (Json{{"kind", "tet10"}}));
+  EXPECT_EQ(first["commandLine"]["threads"], 1);
+  EXPECT_EQ(first["commandLine"]["sharing"], true);
+  EXPECT_EQ(first["variablesInForce"]["kind"], "tet10");
+  EXPECT_EQ(first["variablesInForce"]["low"], "-9");
+  for (const char* library : {"msml", "CGAL", "VTK", "Eigen", "SuiteSparse", "MUMPS", "gnuplot"})
+    EXPECT_NE(first["versions"].value(library, ""), "") << library;
+  EXPECT_NE(first["machine"].get<std::string>().find("processors"), std::string::npos);
+  EXPECT_EQ(first["definition"]["reference"]["set"]["n"], "3");
+  const Json same = run(scene, {"kind=tet10"});
+  EXPECT_EQ(same["sceneHash"], first["sceneHash"]);
+  write(scene, studies::bar(two_runs) + "<!-- changed -->");
+  EXPECT_NE(run(scene, {"kind=tet10"})["sceneHash"], first["sceneHash"]);
+}
+
+TEST(StudyRecord, EveryColumnHasItsUnit) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml";
+  write(scene, studies::bar(two_runs));
+  const Json plain = run(scene);
+  for (const std::string& column : read_csv(folder.path() / "out" / "s" / "results.csv").columns)
+    EXPECT_TRUE(plain["columnUnits"].contains(column)) << column;
+  EXPECT_EQ(plain["columnUnits"]["tip_z"], "length");
+  EXPECT_EQ(plain["columnUnits"]["off"], "length") << "an error that is not relative";
+  EXPECT_EQ(plain["columnUnits"]["rest"], "1");
+  EXPECT_EQ(plain["columnUnits"]["E"], "stress");
+  EXPECT_EQ(plain["columnUnits"]["status"], "text");
+  EXPECT_EQ(plain["columnUnits"]["memory_matrix"], "bytes");
+  write(scene, studies::bar(two_runs, "mm N s MPa"));
+  const Json labelled = run(scene);
+  EXPECT_EQ(labelled["columnUnits"]["tip_z"], "mm");
+  EXPECT_EQ(labelled["columnUnits"]["E"], "MPa");
+  EXPECT_EQ(labelled["columnLabels"]["E"], "E [MPa]");
+}
+
+TEST(StudyRecord, TimesOfOtherThreadsAreTakenAnew) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml";
+  write(scene,
+        studies::bar(R"(<study id="s" repeat="1"><vary variable="n" values="1"/><measure time="total"/></study>)"));
+  EXPECT_GT(run(scene)["nodesComputed"], 0);
+  EXPECT_EQ(run(scene)["nodesComputed"], 0) << "the table holds it";
+  EXPECT_GT(run(scene, {}, 2)["nodesComputed"], 0);
+}
+
+TEST(Units, EveryFieldOfResultsHasOne) {
+  const Description* result = real_language().find("result", {"output"});
+  ASSERT_NE(result, nullptr);
+  for (const std::string& field : result->slots()[static_cast<std::size_t>(result->find("fields"))].choices)
+    EXPECT_NE(field_unit(field), "") << field;
+}
+
+TEST(Units, LabelsTakeThePlaceOfWords) {
+  EXPECT_EQ(in_labels("force/length", "mm N s MPa"), "N/mm");
+  EXPECT_EQ(in_labels("length/time^2", "m kg s Pa"), "m/s^2");
+  EXPECT_EQ(in_labels("mass/volume", "mm N s MPa"), "mass/volume") << "no label says it";
+  EXPECT_EQ(in_labels("stress", ""), "stress");
+}
+
+}  // namespace
+}  // namespace msml
