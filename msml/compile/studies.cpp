@@ -100,14 +100,16 @@ void check_measure(Work& work, const Study& study, const Measure& measure) {
                fmt::format("measure '{}': the scene has no task or output {}{}", quoted_value(measure.id),
                            quoted_value(measure.of), did_you_mean(measure.of, node_names(work))));
   if (measure.quantity == Quantity::error) check_field(work, measure);
-  static const std::set<std::string> times{"total", "own", "simulation", "step", "setup", "assembly", "linear"};
+  static const std::set<std::string> times{"run",  "apart", "total",    "own",   "simulation",
+                                           "step", "setup", "assembly", "linear"};
   if (measure.quantity == Quantity::time && !times.contains(measure.what) && !is_node(work, measure.what)) {
     std::vector<std::string> names = node_names(work);
     names.insert(names.end(), times.begin(), times.end());
-    work.fault(measure.where,
-               fmt::format("time = {} is none of total, own, simulation, step, setup, assembly, linear, and "
-                           "no task has this id{}",
-                           quoted_value(measure.what), did_you_mean(measure.what, names)));
+    work.fault(
+        measure.where,
+        fmt::format("time = {} is none of run, apart, total, own, simulation, step, setup, assembly, linear, and "
+                    "no task has this id{}",
+                    quoted_value(measure.what), did_you_mean(measure.what, names)));
   }
   if (measure.against_truth && !study.truth) work.fault(measure.where, "an error needs a <reference> in the study");
 }

@@ -105,11 +105,13 @@ MeasureKeys describe_measure(Description& tag) {
       tag.parameter<bool>("relative", {.fallback = true, .doc = "divide the error by the norm of the reference"});
   k.of = tag.parameter<std::string>(
       "of", {.optional = true, .doc = "scene output (or task) that is measured; default: the first series of states"});
-  k.time =
-      tag.parameter<std::string>("time", {.optional = true,
-                                          .doc = "seconds: total (of all nodes), own (of those that no earlier run "
-                                                 "computed), simulation, step (of one time step), setup, assembly, "
-                                                 "linear, or the id of a task"});
+  k.time = tag.parameter<std::string>(
+      "time", {.optional = true,
+               .doc = "seconds: run (by the clock, with what earlier runs computed taken "
+                      "from them), apart (by the clock, the same once more with nothing "
+                      "taken from others), total (sum of all nodes), own (sum of those that "
+                      "no earlier run computed), simulation, step (of one time step), setup, assembly, "
+                      "linear, or the id of a task"});
   k.memory =
       tag.parameter<std::string>("memory", {.optional = true, .choices = {"peak", "matrix", "factor"}, .doc = "bytes"});
   k.iterations = tag.parameter<std::string>(
@@ -348,6 +350,11 @@ std::vector<std::string> Study::variables() const {
 
 bool Study::timed() const {
   return std::any_of(measures.begin(), measures.end(), [](const Measure& m) { return m.quantity == Quantity::time; });
+}
+
+bool Study::measures_apart() const {
+  return std::any_of(measures.begin(), measures.end(),
+                     [](const Measure& m) { return m.quantity == Quantity::time && m.what == "apart"; });
 }
 
 bool Study::alone() const {

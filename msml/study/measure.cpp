@@ -90,6 +90,8 @@ double increments(const Json& settings) {
 
 double seconds(const Measure& wanted, const Finished& finished) {
   const auto& nodes = finished.result.nodes;
+  if (wanted.what == "run") return finished.result.seconds;
+  if (wanted.what == "apart") return finished.apart_seconds;
   if (wanted.what == "total" || wanted.what == "own") {
     double sum = 0;
     for (const int node : finished.scene.plan.order)

@@ -12,6 +12,7 @@ struct Finished {
   const Prepared& scene;
   const RunResult& result;
   const RunShelf& shelf;
+  double apart_seconds = 0;  ///< of the same run made once more with nothing taken from others, where it is asked for
 };
 
 /// The value of a measure. `reference` is the run that errors are taken against, or null. Throws Error that says what

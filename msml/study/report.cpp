@@ -160,6 +160,7 @@ std::string study_json(const Study& study, const Table& table, const Session& se
             {"seconds", session.seconds},
             {"nodesComputed", session.sharing.computed},
             {"nodesShared", session.sharing.shared},
+            {"nodesComputedApart", session.sharing.apart},
             {"units", graph.units}};
   for (const auto& [name, variable] : session.scene.variables) json["variablesInForce"][name] = variable.value;
   json["variables"] = study.variables();

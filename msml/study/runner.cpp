@@ -121,6 +121,8 @@ class Runner {
     return cells(run, row);
   }
 
+  std::size_t computed_apart() const { return apart_; }
+
  private:
   struct Row {
     std::string status, reason, warnings, recovered;
@@ -141,12 +143,13 @@ class Runner {
       if (repetition > 0 && study_.enough > 0 && spent >= study_.enough) break;
       RunShelf shelf(results_, run.scene->keys, static_cast<std::size_t>(repetition));
       const RunResult result = pass(*run.scene, shelf, folder, study_.limit);
-      const Finished finished{*run.scene, result, shelf};
       spent += result.seconds;
-      row.unknowns = unknowns(finished);
+      row.unknowns = unknowns({*run.scene, result, shelf});
       row.warnings = warnings_of(result);
       row.recovered = recoveries_of(result);
       if (!result.errors.empty()) throw result.errors.front();
+      const Finished finished{*run.scene, result, shelf, study_.measures_apart() ? apart(run, folder) : 0};
+      spent += finished.apart_seconds;
       std::optional<Finished> reference;
       if (truth) reference.emplace(Finished{*run.reference, *truth, *truth_shelf});
       for (std::size_t i = 0; i < run.study.measures.size(); ++i)
@@ -155,6 +158,16 @@ class Runner {
               measure(run.study.measures[i], run, finished, reference ? &*reference : nullptr, registry_));
       ++row.passes;
     }
+  }
+
+  /// Seconds of a pass that takes nothing from other runs and leaves them nothing.
+  double apart(const StudyRun& run, const fs::path& folder) {
+    SharedResults own;
+    RunShelf shelf(own, run.scene->keys, 0);
+    const RunResult result = pass(*run.scene, shelf, folder / "apart", study_.limit);
+    apart_ += own.computed();
+    if (!result.errors.empty()) throw result.errors.front();
+    return result.seconds;
   }
 
   /// A reference that failed once is not tried again for the next run.
@@ -213,6 +226,7 @@ class Runner {
   SharedResults& results_;
   std::mutex mutex_;
   std::map<const Prepared*, std::string> failed_;  ///< references, and why
+  std::atomic<std::size_t> apart_ = 0;             ///< nodes computed in runs that share nothing
 };
 
 /// The row of an earlier session with this key, or null.
@@ -310,7 +324,7 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
     std::error_code ignored;
     fs::remove_all(options.folder / "runs", ignored);
   }
-  sharing = {results.computed(), results.shared()};
+  sharing = {results.computed(), results.shared(), runner.computed_apart()};
   return table;
 }
 

@@ -20,6 +20,7 @@ struct StudyOptions {
 /// How many nodes were computed, and how often a result was taken from another run.
 struct Sharing {
   std::size_t computed = 0, shared = 0;
+  std::size_t apart = 0;  ///< computed in runs that were made once more with nothing shared
 };
 
 /// The columns of a study's table: variables, status, unknowns, where a time is measured how

@@ -92,9 +92,10 @@ struct Study {
   Location where;
   /// Names of the variables, in the order of the columns.
   std::vector<std::string> variables() const;
-  bool alone() const;       ///< what is measured asks for runs one after another
-  bool timed() const;       ///< a time is measured
-  int repetitions() const;  ///< passes over each run
+  bool alone() const;           ///< what is measured asks for runs one after another
+  bool timed() const;           ///< a time is measured
+  bool measures_apart() const;  ///< one of the times is that of a run that shares nothing
+  int repetitions() const;      ///< passes over each run
 };
 
 /// Adds <studies> and what stands in it.

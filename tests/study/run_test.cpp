@@ -192,6 +192,20 @@ TEST(StudyRun, SharedNodesCostARunNoTimeOfItsOwn) {
   EXPECT_GT(ran.table.number(1, "all"), ran.table.number(1, "own"));
 }
 
+TEST(StudyRun, ARunApartComputesEveryNodeItself) {
+  const tiny::Folder folder;
+  const Ran ran = run(R"(<study id="s" repeat="3"> <vary variable="E" values="1000 2000"/> <measure id="on" time="run"/>
+    <measure id="off" time="apart"/> <measure id="mesh_time" time="mesh"/> <measure id="all" time="total"/></study>)",
+                      folder);
+  EXPECT_EQ(ran.sharing.computed, 3U * (3U + 2U)) << "runs apart leave nothing for others";
+  EXPECT_EQ(ran.sharing.apart, 3U * 2U * 4U) << "and take nothing from them: all four nodes, each time";
+  for (std::size_t row = 0; row < 2; ++row) {
+    EXPECT_EQ(ran.table.text(row, "status"), "done") << ran.table.text(row, "reason");
+    EXPECT_GT(ran.table.number(row, "off_low"), 0);
+    EXPECT_NE(ran.table.number(row, "off"), ran.table.number(row, "all")) << "a clock, no sum of nodes";
+  }
+}
+
 int processors() {
   cpu_set_t some;
   return ::sched_getaffinity(0, sizeof some, &some) == 0 ? CPU_COUNT(&some) : 0;
