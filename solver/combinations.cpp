@@ -171,14 +171,6 @@ void check_prony(const Model& model, const Region& region) {
       throw Error(fmt::format("region '{}': prony: tau = {} is not > 0", region.name, prony.tau[i]));
   }
   if (sum >= 1) throw Error(fmt::format("region '{}': prony: the sum of g = {} is not < 1", region.name, sum));
-  if (model.formulation != Formulation::standard)
-    throw Error(fmt::format("region '{}': prony does not go with formulation=\"{}\"; choose formulation=\"standard\"",
-                            region.name, spelled(model.formulation)));
-  if (model.plane == Plane::stress)
-    throw Error(
-        fmt::format("region '{}': prony does not go with plane=\"stress\"; choose plane=\"strain\" or "
-                    "tetrahedra",
-                    region.name));
   if (region.law && region.law->components() == 1)
     throw Error(fmt::format("region '{}': prony is for stresses, which {} does not have; leave prony out", region.name,
                             region.law->name()));

@@ -41,7 +41,9 @@ struct Region {
   LocalLaw local_law = {};         ///< empty: `law` everywhere
   PointLaw point_law = {};         ///< if set, instead of both
   std::function<double(int element, const Vec3& X)> density_at = {};  ///< if set, instead of density
-  Prony prony = {};
+  Prony prony = {};                                                   ///< where prony_at is set: a typical one
+  /// If set, instead of prony: as many terms everywhere, each as checked as `prony`.
+  std::function<Prony(int element, const Vec3& X)> prony_at = {};
 };
 
 /// How an element is computed. single_rotation: quadratic tetrahedra with one rotation each; fbar: linear tetrahedra

@@ -106,6 +106,8 @@ class Elements {
   /// What is stored at the end of the last step beside the energy that add_internal found there, which with a history
   /// is the potential of the forces of that step.
   virtual double stored_beside() const { return 0; }
+  /// u with the pressures that act at the end of the last step, which with a history are not the unknown ones.
+  virtual Vector acting(const Vector& u) const { return u; }
   virtual const Numbering& numbering() const = 0;
   virtual const PatternPtr& pattern() const = 0;
 };

@@ -131,6 +131,7 @@ class InlaidElements final : public Elements {
   }
   std::shared_ptr<const std::vector<double>> history_energy() const override { return body_->history_energy(); }
   double stored_beside() const override { return body_->stored_beside(); }
+  Vector acting(const Vector& u) const override { return body_->acting(u); }
   const Numbering& numbering() const override { return body_->numbering(); }
   const PatternPtr& pattern() const override { return body_->pattern(); }
 

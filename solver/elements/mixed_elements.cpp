@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include "solver/elements/element_sums.hpp"
+#include "solver/elements/history_values.hpp"
 
 namespace msml::fe {
 namespace {
@@ -19,6 +20,8 @@ struct Result {
   Lanes coupling[body][corners][3];       ///< displacement by pressure
   Lanes pressure[corners][corners];
 };
+
+std::size_t element_of(const MixedBatch& batch, int lane) { return static_cast<std::size_t>(batch.first + lane); }
 
 /// The ten nodes of each element and the additional nodes of its corners.
 std::vector<int> with_pressure_nodes(const Numbering& numbering) {
@@ -76,7 +79,11 @@ struct MixedElements::Values {
   Lanes p;
 };
 
-MixedElements::MixedElements(const Model& model) : numbering_(number(model)), densities_(model) {
+MixedElements::MixedElements(const Model& model)
+    : numbering_(number(model)),
+      pressures_(model, numbering_),
+      stored_energies_(model.stored_energies),
+      densities_(model) {
   const Rule<3> rule = four_point_rule();
   for (std::size_t q = 0; q < rule.size(); ++q) {
     reference_gradients_[q] = Tetrahedron<body>::gradients(rule[q].xi);
@@ -125,8 +132,11 @@ void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vecto
       batch.point[q].weight[lane] = lane < batch.count ? rule[q].weight * J.determinant() : 0.0;
     }
   }
-  batch.law = BatchSplit(model.regions[static_cast<std::size_t>(batch.region)],
-                         {numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count)}, places);
+  const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
+  const std::span<const int> elements(numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count));
+  batch.law = BatchSplit(region, elements, places);
+  if (!region.prony.g.empty())
+    batch.history = PronyHistory(series_of(region, elements, places), MixedBatch::points, region.law->small_strain());
 }
 
 // A shear modulus over an element's size: pressures then have the size of displacements, and the constraint that of
@@ -174,30 +184,38 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
   batch.law.evaluate_rest(want, {H, count}, {rest, count});
   batch.law.evaluate_constraint(definite ? Want::stress : want, {H, count}, {volume, count});
 
+  for (int q = 0; q < count; ++q) {
+    const Lanes p = at[q].p;
+    Response& sum = rest[q];
+    sum.energy += p * volume[q].energy - 0.5 * p * p * batch.law.compliance(static_cast<std::size_t>(q));
+    for (int k = 0; k < 9; ++k) sum.P.c[k] += p * volume[q].P.c[k];
+    for (int k = 0; k < 45 && matrix && !definite; ++k) sum.tangent[k] += p * volume[q].tangent[k];
+  }
+  const bool remembers = !batch.history.empty();
+  if (remembers) batch.history.apply(want, {H, count}, {rest, count});
+
   Assembled found;
   Result result{};
   for (int q = 0; q < count; ++q) {
-    const Lanes w = batch.point[q].weight, p = at[q].p, g = volume[q].energy;
-    const Lanes& compliance = batch.law.compliance(static_cast<std::size_t>(q));
-    Response& sum = rest[q];
-    for (int k = 0; k < 9; ++k) sum.P.c[k] += p * volume[q].P.c[k];
-    add_force<3, body>(sum.P, w, at[q].g, result.force);
+    const auto point = static_cast<std::size_t>(q);
+    const Lanes w = batch.point[q].weight;
+    const Lanes& compliance = batch.law.compliance(point);
+    add_force<3, body>(rest[q].P, w, at[q].g, result.force);
     Lanes share[corners];
     for (int c = 0; c < corners; ++c) {
-      share[c] = barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(c)] * numbering_.pressure_scale * w;
-      result.volume[c] += share[c] * (g - p * compliance);
+      share[c] = barycentric_[point][static_cast<std::size_t>(c)] * numbering_.pressure_scale * w;
+      if (remembers) share[c] *= batch.history.factor(point);
+      result.volume[c] += share[c] * (volume[q].energy - at[q].p * compliance);
     }
-    note(w * (sum.energy + p * g - 0.5 * p * p * compliance), volume_ratio(H[q]), batch.count,
-         numbering_.elements.data() + batch.first, found);
+    note(w * rest[q].energy, volume_ratio(H[q]), batch.count, numbering_.elements.data() + batch.first, found);
     if (!matrix) continue;
-    for (int k = 0; k < 45 && !definite; ++k) sum.tangent[k] += p * volume[q].tangent[k];
-    add_stiffness<3, body>(sum.tangent, w, at[q].g, result.block);
+    add_stiffness<3, body>(rest[q].tangent, w, at[q].g, result.block);
     for (int c = 0; c < corners; ++c) {
       for (int a = 0; a < body; ++a)
         for (int i = 0; i < 3; ++i) result.coupling[a][c][i] += share[c] * inner<3>(volume[q].P.c + 3 * i, at[q].g[a]);
       for (int d = 0; d < corners; ++d)
-        result.pressure[c][d] -= share[c] * compliance * numbering_.pressure_scale *
-                                 barycentric_[static_cast<std::size_t>(q)][static_cast<std::size_t>(d)];
+        result.pressure[c][d] -=
+            share[c] * compliance * numbering_.pressure_scale * barycentric_[point][static_cast<std::size_t>(d)];
     }
   }
   scatter_force(batch, result, force);
@@ -207,6 +225,58 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
 
 Assembled MixedElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
   return add_by_colour(colours_, [&](std::size_t b) { return add_batch(batches_[b], u, want, force, matrix); });
+}
+
+void MixedElements::begin_step(double dt) {
+  pressures_.begin_step(dt);
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    if (!batches_[b].history.empty()) batches_[b].history.begin_step(dt);
+  });
+}
+
+void MixedElements::end_step(const Vector& u) {
+  pressures_.end_step(u);
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    if (!batches_[b].history.empty()) end_step(batches_[b], u);
+  });
+}
+
+void MixedElements::end_step(MixedBatch& batch, const Vector& u) const {
+  constexpr int count = MixedBatch::points;
+  Gradients H[count];
+  Response rest[count], volume[count];
+  Lanes p[count], weights[count];
+  for (int q = 0; q < count; ++q) {
+    const Values at = values(batch, q, u);
+    H[q] = at.H;
+    p[q] = at.p;
+    weights[q] = batch.point[q].weight;
+  }
+  const Want want = stored_energies_ ? Want::tangent : Want::stress;
+  batch.law.evaluate_rest(want, {H, count}, {rest, count});
+  batch.law.evaluate_constraint(want, {H, count}, {volume, count});
+  for (std::size_t q = 0; q < count; ++q)
+    rest[q] = joined(rest[q], volume[q], p[q], batch.law.modulus(q), batch.law.largest_modulus(q), stored_energies_);
+  batch.history.end_step({H, count}, {rest, count}, stored_energies_);
+  if (!stored_energies_) return;
+  for (std::size_t q = 0; q < count; ++q) rest[q].energy += p[q] * (volume[q].energy - p[q] * batch.law.compliance(q));
+  batch.history.apply(Want::stress, {H, count}, {rest, count});
+  batch.stored_beside = fe::stored_beside(batch.history, rest, weights, batch.count);
+}
+
+double MixedElements::stored_beside() const {
+  double sum = 0;
+  for (const MixedBatch& batch : batches_) sum += batch.stored_beside;
+  return sum;
+}
+
+std::shared_ptr<const std::vector<double>> MixedElements::history_stress() const {
+  return history_stresses(batches_, numbering_.elements.size(), MixedBatch::points, element_of);
+}
+
+std::shared_ptr<const std::vector<double>> MixedElements::history_energy() const {
+  if (!stored_energies_) return nullptr;
+  return history_energies(batches_, numbering_.elements.size(), MixedBatch::points, element_of);
 }
 
 void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
@@ -222,8 +292,9 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
 }
 
 std::size_t MixedElements::bytes() const {
-  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
-  for (const MixedBatch& batch : batches_) sum += batch.law.bytes();
+  std::size_t sum =
+      numbering_.bytes() + pressures_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
+  for (const MixedBatch& batch : batches_) sum += batch.law.bytes() + batch.history.bytes();
   return sum;
 }
 

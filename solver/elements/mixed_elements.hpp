@@ -4,6 +4,8 @@
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
 #include "solver/elements/mass.hpp"
+#include "solver/elements/pressure_history.hpp"
+#include "solver/elements/prony_history.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/elements/split_laws.hpp"
 
@@ -22,6 +24,8 @@ struct MixedBatch {
   int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
   Point point[points];
   BatchSplit law;
+  PronyHistory history;      ///< empty where elastic
+  double stored_beside = 0;  ///< see Elements::stored_beside
 };
 
 /// Stationary points of int rest(F) + p g(F) - p^2/(2 k) with the pressure p linear in each element and continuous in
@@ -29,12 +33,22 @@ struct MixedBatch {
 /// doi 10.1016/0045-7949(87)90265-3; stable pair: Taylor and Hood 1973, doi 10.1016/0045-7930(73)90027-3).
 /// p = Numbering::pressure_scale times the first component of the additional node of each corner. The tangent is
 /// symmetric and indefinite. Want::definite_tangent leaves out p d2g/dF2.
+/// With a history (see PronyHistory) p stays the pressure of the elastic law: all of S_e = d(rest + p g)/dE relaxes, so
+/// that the elements agree with the standard ones where the law is compressible. Stationary is then, with the factor of
+/// the step, int factor (rest + p g - p^2/(2 k)) + Q : E, which is symmetric too. What acts of the pressure is the
+/// convolution of p, see Elements::acting.
 class MixedElements final : public Elements {
  public:
   explicit MixedElements(const Model& model);
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
   void visit_points(const Vector& u, const PointsVisitor& visit) const override;
+  void begin_step(double dt) override;
+  void end_step(const Vector& u) override;
+  std::shared_ptr<const std::vector<double>> history_stress() const override;
+  std::shared_ptr<const std::vector<double>> history_energy() const override;
+  double stored_beside() const override;
+  Vector acting(const Vector& u) const override { return pressures_.acting(u); }
   std::size_t bytes() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
@@ -46,9 +60,12 @@ class MixedElements final : public Elements {
   void fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const;
   void set_scale(const Model& model);
   Values values(const MixedBatch& batch, int q, const Vector& u) const;
+  void end_step(MixedBatch& batch, const Vector& u) const;
   Assembled add_batch(const MixedBatch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
 
   Numbering numbering_;
+  PressureHistory pressures_;
+  bool stored_energies_ = true;
   PatternPtr pattern_;
   std::vector<int> cells_;  ///< mesh points of the ten nodes of each element of numbering()
   Densities densities_;

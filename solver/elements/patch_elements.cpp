@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "solver/elements/element_sums.hpp"
+#include "solver/elements/history_values.hpp"
 
 namespace msml::fe {
 namespace {
@@ -15,8 +16,11 @@ constexpr int patch_size = 8;
 constexpr int most_batches = patch_limit / lanes;
 constexpr int most_nodes = patch_limit + 3;  // each element behind a face adds at most one
 
+std::size_t element_of(const PatchBatch& batch, int lane) { return static_cast<std::size_t>(batch.element[lane]); }
+
 /// What the law gives in one batch.
 struct Evaluated {
+  Gradients H;
   Response rest, volume;
   Lanes J;
 };
@@ -37,11 +41,18 @@ double sum(const Lanes& x) {
   return total;
 }
 
-/// Force and stiffness of one batch with the patch's p = k gbar; d += sum V dg/du, node after node of the patch.
-void add_batch(const PatchBatch& batch, const Patch& patch, const Evaluated& at, double p, bool definite, double* d,
-               Vector& force, BlockMatrix* matrix) {
-  Response law = at.rest;
-  for (int k = 0; k < 9; ++k) law.P.c[k] += p * at.volume.P.c[k];
+/// P and tangent of rest + p g, viscoelastic where the batch remembers, take the place of those of rest.
+void join(const PatchBatch& batch, double p, Want want, Evaluated& at) {
+  for (int k = 0; k < 9; ++k) at.rest.P.c[k] += p * at.volume.P.c[k];
+  if (want == Want::tangent || want == Want::single_tangent)
+    for (int k = 0; k < 45; ++k) at.rest.tangent[k] += p * at.volume.tangent[k];
+  if (!batch.history.empty()) batch.history.apply(want, {&at.H, 1}, {&at.rest, 1});
+}
+
+/// Force and stiffness of one batch with the joined law; d += sum V dg/du, node after node of the patch.
+void add_batch(const PatchBatch& batch, const Patch& patch, const Evaluated& at, double* d, Vector& force,
+               BlockMatrix* matrix) {
+  const Response& law = at.rest;
   Lanes pull[4][3] = {}, slope[4][3] = {};
   add_force<3, 4>(law.P, batch.weight, batch.g, pull);
   if (matrix) add_force<3, 4>(at.volume.P, batch.weight, batch.g, slope);
@@ -52,7 +63,6 @@ void add_batch(const PatchBatch& batch, const Patch& patch, const Evaluated& at,
         d[3 * batch.local[lane][a] + i] += slope[a][i][lane];
       }
   if (!matrix) return;
-  for (int k = 0; k < 45 && !definite; ++k) law.tangent[k] += p * at.volume.tangent[k];
   Lanes block[10][9] = {};
   add_stiffness<3, 4>(law.tangent, batch.weight, batch.g, block);
   const std::size_t nodes = patch.nodes.size();
@@ -83,7 +93,8 @@ void add_coupling(const Patch& patch, double factor, const double* d, BlockMatri
 
 }  // namespace
 
-PatchElements::PatchElements(const Model& model) : numbering_(number(model)), densities_(model) {
+PatchElements::PatchElements(const Model& model)
+    : numbering_(number(model)), stored_energies_(model.stored_energies), densities_(model) {
   for (const std::vector<int>& elements : make_patches(numbering_, patch_size)) make_patch(elements, model);
   find_positions();
   std::vector<std::vector<int>> patch_nodes;
@@ -112,7 +123,31 @@ void PatchElements::make_patch(const std::vector<int>& elements, const Model& mo
   }
   patch.modulus /= patch.volume;
   patch.batches = static_cast<int>(batches_.size()) - patch.first_batch;
+  remember(patch, model.regions[static_cast<std::size_t>(patch.region)]);
   patches_.push_back(patch);
+}
+
+void PatchElements::remember(const Patch& patch, const Region& region) {
+  if (region.prony.g.empty()) return;
+  const std::span<PatchBatch> batches(batches_.data() + patch.first_batch, static_cast<std::size_t>(patch.batches));
+  Prony mean = region.prony;
+  if (region.prony_at) {
+    mean.g.assign(mean.g.size(), 0);
+    mean.tau.assign(mean.tau.size(), 0);
+    for (const PatchBatch& batch : batches)
+      for (int lane = 0; lane < batch.count; ++lane) {
+        Vec3 middle = Vec3::Zero();
+        const int* ids = numbering_.mesh->cell(batch.cell[lane]);
+        for (int a = 0; a < 4; ++a) middle += 0.25 * positions().row(ids[a]).transpose();
+        const Prony own = region.prony_at(batch.cell[lane], middle);
+        for (std::size_t i = 0; i < mean.g.size(); ++i) {
+          mean.g[i] += batch.weight[lane] / patch.volume * own.g[i];
+          mean.tau[i] += batch.weight[lane] / patch.volume * own.tau[i];
+        }
+      }
+  }
+  for (PatchBatch& batch : batches)
+    batch.history = PronyHistory({PronySeries({&mean, 1})}, 1, region.law->small_strain());
 }
 
 void PatchElements::fill(PatchBatch& batch, const Patch& patch, const Model& model) {
@@ -161,26 +196,78 @@ Assembled PatchElements::add_patch(const Patch& patch, const Vector& u, Want wan
   const bool definite = want == Want::definite_tangent;
   double gbar = 0;
   for (int b = 0; b < patch.batches; ++b) {
-    const Gradients H = gradient(batches[b], u);
-    batches[b].law.evaluate_rest(want, {&H, 1}, {&at[b].rest, 1});
-    batches[b].law.evaluate_constraint(definite ? Want::stress : want, {&H, 1}, {&at[b].volume, 1});
-    at[b].J = volume_ratio(H);
+    at[b].H = gradient(batches[b], u);
+    batches[b].law.evaluate_rest(want, {&at[b].H, 1}, {&at[b].rest, 1});
+    batches[b].law.evaluate_constraint(definite ? Want::stress : want, {&at[b].H, 1}, {&at[b].volume, 1});
+    at[b].J = volume_ratio(at[b].H);
     gbar += sum(batches[b].weight * at[b].volume.energy) / patch.volume;
   }
   Assembled found;
   double d[3 * most_nodes] = {};
   for (int b = 0; b < patch.batches; ++b) {
+    join(batches[b], patch.modulus * gbar, want, at[b]);
     note(batches[b].weight * at[b].rest.energy, at[b].J, batches[b].count, batches[b].cell, found);
-    add_batch(batches[b], patch, at[b], patch.modulus * gbar, definite, d, force, matrix);
+    add_batch(batches[b], patch, at[b], d, force, matrix);
   }
-  if (matrix) add_coupling(patch, patch.modulus / patch.volume, d, *matrix);
-  found.energy += 0.5 * patch.volume * patch.modulus * gbar * gbar;
+  const double modulus = patch.modulus * (batches->history.empty() ? 1 : batches->history.factor(0)[0]);
+  if (matrix) add_coupling(patch, modulus / patch.volume, d, *matrix);
+  found.energy += 0.5 * patch.volume * modulus * gbar * gbar;
   found.finite = found.finite && std::isfinite(gbar);
   return found;
 }
 
 Assembled PatchElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
   return add_by_colour(colours_, [&](std::size_t p) { return add_patch(patches_[p], u, want, force, matrix); });
+}
+
+void PatchElements::begin_step(double dt) {
+  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
+    if (!batches_[b].history.empty()) batches_[b].history.begin_step(dt);
+  });
+}
+
+void PatchElements::end_step(const Vector& u) {
+  tbb::parallel_for(std::size_t(0), patches_.size(), [&](std::size_t p) {
+    if (!batches_[static_cast<std::size_t>(patches_[p].first_batch)].history.empty()) end_step(patches_[p], u);
+  });
+}
+
+void PatchElements::end_step(Patch& patch, const Vector& u) {
+  PatchBatch* batches = batches_.data() + patch.first_batch;
+  Evaluated at[most_batches];
+  double gbar = 0;
+  for (int b = 0; b < patch.batches; ++b) {
+    at[b].H = gradient(batches[b], u);
+    const Want want = stored_energies_ ? Want::tangent : Want::stress;
+    batches[b].law.evaluate_rest(want, {&at[b].H, 1}, {&at[b].rest, 1});
+    batches[b].law.evaluate_constraint(want, {&at[b].H, 1}, {&at[b].volume, 1});
+    gbar += sum(batches[b].weight * at[b].volume.energy) / patch.volume;
+  }
+  patch.stored_beside = 0;
+  const Lanes modulus = lanes_of(patch.modulus), p = gbar * modulus;
+  for (int b = 0; b < patch.batches; ++b) {
+    PatchBatch& batch = batches[b];
+    Response all = joined(at[b].rest, at[b].volume, p, modulus, patch.modulus, stored_energies_);
+    batch.history.end_step({&at[b].H, 1}, {&all, 1}, stored_energies_);
+    if (!stored_energies_) continue;
+    batch.history.apply(Want::stress, {&at[b].H, 1}, {&all, 1});
+    patch.stored_beside += fe::stored_beside(batch.history, {&all, 1}, {&batch.weight, 1}, batch.count);
+  }
+}
+
+double PatchElements::stored_beside() const {
+  double sum = 0;
+  for (const Patch& patch : patches_) sum += patch.stored_beside;
+  return sum;
+}
+
+std::shared_ptr<const std::vector<double>> PatchElements::history_stress() const {
+  return history_stresses(batches_, numbering_.elements.size(), 1, element_of);
+}
+
+std::shared_ptr<const std::vector<double>> PatchElements::history_energy() const {
+  if (!stored_energies_) return nullptr;
+  return history_energies(batches_, numbering_.elements.size(), 1, element_of);
 }
 
 void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
@@ -203,7 +290,7 @@ void PatchElements::add_mass(bool lumped, ScalarMatrix& mass) const {
 
 std::size_t PatchElements::bytes() const {
   std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(PatchBatch) + patches_.size() * sizeof(Patch);
-  for (const PatchBatch& batch : batches_) sum += batch.law.bytes();
+  for (const PatchBatch& batch : batches_) sum += batch.law.bytes() + batch.history.bytes();
   for (const Patch& patch : patches_) sum += (patch.nodes.size() + patch.positions.size()) * sizeof(int);
   return sum;
 }

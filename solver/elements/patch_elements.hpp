@@ -4,6 +4,7 @@
 #include "solver/elements/chunks.hpp"
 #include "solver/elements/mass.hpp"
 #include "solver/elements/patches.hpp"
+#include "solver/elements/prony_history.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/elements/split_laws.hpp"
 
@@ -19,6 +20,7 @@ struct PatchBatch {
   Lanes g[4][3];        ///< dN_a/dX
   Lanes weight;         ///< reference volume
   BatchSplit law;
+  PronyHistory history;  ///< empty where elastic
 };
 
 /// Elements with one volume change.
@@ -29,6 +31,7 @@ struct Patch {
   std::vector<int> positions;  ///< of block (a, b) in the pattern, at a * #nodes + b
   double volume = 0;           ///< reference
   double modulus = 0;          ///< mean of the elements, weighted by volume
+  double stored_beside = 0;    ///< see Elements::stored_beside
 };
 
 /// Energy sum_e V_e rest(F_e) + V k/2 gbar^2 of each patch of volume V, gbar the mean of g over it weighted by volume:
@@ -36,12 +39,19 @@ struct Patch {
 /// Souza Neto, Andrade Pires and Owen 2005, doi 10.1002/nme.1187), in the form that has an energy, so that the tangent
 /// sum V_e (A_rest + k gbar d2g) + k/V (sum V_e dg)(sum V_e dg)^T is symmetric; it couples all nodes of a patch.
 /// Want::definite_tangent leaves out k gbar d2g.
+/// With a history (see PronyHistory) each element remembers S_e = d(rest + k gbar g)/dE, all of a patch with the mean
+/// of their series: the energy of a step is factor (sum_e V_e rest + V k/2 gbar^2) + sum_e V_e Q_e : E_e.
 class PatchElements final : public Elements {
  public:
   explicit PatchElements(const Model& model);
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override;
   void add_mass(bool lumped, ScalarMatrix& mass) const override;
   void visit_points(const Vector& u, const PointsVisitor& visit) const override;
+  void begin_step(double dt) override;
+  void end_step(const Vector& u) override;
+  std::shared_ptr<const std::vector<double>> history_stress() const override;
+  std::shared_ptr<const std::vector<double>> history_energy() const override;
+  double stored_beside() const override;
   std::size_t bytes() const override;
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
@@ -51,9 +61,12 @@ class PatchElements final : public Elements {
   void make_patch(const std::vector<int>& elements, const Model& model);
   void fill(PatchBatch& batch, const Patch& patch, const Model& model);
   void find_positions();
+  void remember(const Patch& patch, const Region& region);
+  void end_step(Patch& patch, const Vector& u);
   Assembled add_patch(const Patch& patch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
 
   Numbering numbering_;
+  bool stored_energies_ = true;
   PatternPtr pattern_;
   Densities densities_;
   std::vector<PatchBatch> batches_;

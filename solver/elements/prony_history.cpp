@@ -103,50 +103,46 @@ Eigen::Matrix<double, 6, 6> stiffness(const Gradients& H, const Response& respon
         dP(I / 3, I % 3) += response.tangent[I >= J ? packed(I, J) : packed(J, I)][lane] * dF(J / 3, J % 3);
     C.col(m) = vector_of(inverse * (dP - dF * S));
   }
+  // Plane stress: the condensed tangent has no row of E_33, and S_33 = 0 takes nothing from this place.
+  if (std::abs(C(2, 2)) < 1e-9 * std::abs(C(0, 0))) {
+    C.row(2).setZero();
+    C.col(2).setZero();
+    C(2, 2) = C(0, 0);
+  }
   return 0.5 * (C + C.transpose());
 }
 
 }  // namespace
 
-PronyHistory::PronyHistory(const Prony& prony, int points, bool small_strain)
-    : prony_(prony), small_strain_(small_strain) {
-  double sum = 0;
-  for (const double g : prony.g) sum += g;
-  if (prony.long_term) scale_ = 1 / (1 - sum);
+PronyHistory::PronyHistory(std::vector<PronySeries> series, int points, bool small_strain)
+    : series_(std::move(series)), small_strain_(small_strain) {
   const std::size_t count = static_cast<std::size_t>(points);
-  decay_.resize(prony.g.size());
-  share_.resize(prony.g.size());
   elastic_.resize(count);
   fixed_.resize(count);
   stress_.resize(count);
   energy_.resize(count);
-  parts_.assign(prony.g.size(), std::vector<SymmetricLanes>(count));
+  parts_.assign(series_.front().terms().size(), std::vector<SymmetricLanes>(count));
   begin_step(0);
 }
 
 void PronyHistory::begin_step(double dt) {
-  double factor = 1;
+  for (PronySeries& series : series_) series.begin_step(dt);
   fixed_.assign(fixed_.size(), {});
-  for (std::size_t i = 0; i < prony_.g.size(); ++i) {
-    const double g = prony_.g[i], x = dt / prony_.tau[i];
-    decay_[i] = std::exp(-x);
-    share_[i] = x > 0 ? -std::expm1(-x) / x : 1;
-    factor += g * (share_[i] - 1);
+  for (std::size_t i = 0; i < parts_.size(); ++i)
     for (std::size_t q = 0; q < fixed_.size(); ++q)
-      for (int k = 0; k < 6; ++k) fixed_[q].c[k] += decay_[i] * parts_[i][q].c[k] - g * share_[i] * elastic_[q].c[k];
-  }
-  factor_ = factor * scale_;
+      for (int k = 0; k < 6; ++k) fixed_[q].c[k] += of(q).fixed(i, parts_[i][q].c[k], elastic_[q].c[k]);
 }
 
 void PronyHistory::apply(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const {
   for (std::size_t q = 0; q < responses.size(); ++q) {
     Response& response = responses[q];
-    response.energy *= factor_;
-    for (Lanes& entry : response.P.c) entry *= factor_;
+    const Lanes& factor = of(q).factor();
+    response.energy *= factor;
+    for (Lanes& entry : response.P.c) entry *= factor;
     const Tensor<Lanes> Q = full(fixed_[q]);
     add_fixed(Q, gradients[q], small_strain_, response);
     if (want == Want::stress) continue;
-    for (Lanes& entry : response.tangent) entry *= factor_;
+    for (Lanes& entry : response.tangent) entry *= factor;
     if (small_strain_) continue;
     const Tensor<Lanes> geometric = want == Want::definite_tangent ? positive_part(Q) : Q;
     for (int i = 0; i < 3; ++i)
@@ -156,17 +152,15 @@ void PronyHistory::apply(Want want, std::span<const Gradients> gradients, std::s
 }
 
 void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<const Response> responses, bool stored) {
-  double rest = 1;
-  for (const double g : prony_.g) rest -= g;
   for (std::size_t q = 0; q < responses.size(); ++q) {
+    const PronySeries& series = of(q);
     SymmetricLanes now = small_strain_ ? symmetric(responses[q].P) : second_piola(gradients[q], responses[q].P);
     for (int k = 0; k < 6; ++k) {
-      now.c[k] *= scale_;
-      stress_[q].c[k] = rest * now.c[k];
-      for (std::size_t i = 0; i < prony_.g.size(); ++i) {
-        Lanes& part = parts_[i][q].c[k];
-        part = decay_[i] * part + prony_.g[i] * share_[i] * (now.c[k] - elastic_[q].c[k]);
-        stress_[q].c[k] += part;
+      now.c[k] *= series.scale();
+      stress_[q].c[k] = series.rest() * now.c[k];
+      for (std::size_t i = 0; i < parts_.size(); ++i) {
+        series.advance(i, now.c[k] - elastic_[q].c[k], parts_[i][q].c[k]);
+        stress_[q].c[k] += parts_[i][q].c[k];
       }
       elastic_[q].c[k] = now.c[k];
     }
@@ -175,28 +169,29 @@ void PronyHistory::end_step(std::span<const Gradients> gradients, std::span<cons
 }
 
 void PronyHistory::store(std::size_t point, const Gradients& gradient, const Response& response) {
-  double rest = 1;
-  for (const double g : prony_.g) rest -= g;
-  energy_[point] = rest * scale_ * response.energy;
+  const PronySeries& series = of(point);
+  energy_[point] = series.rest() * series.scale() * response.energy;
   for (int lane = 0; lane < lanes; ++lane) {
-    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> C(scale_ * stiffness(gradient, response, lane, small_strain_));
+    const double scale = series.scale()[lane];
+    const Eigen::LLT<Eigen::Matrix<double, 6, 6>> C(scale * stiffness(gradient, response, lane, small_strain_));
     if (C.info() != Eigen::Success) continue;
     const auto spring = [&](const SymmetricLanes& S) {
       Mat3 full;
       for (int k = 0; k < 9; ++k) full(k / 3, k % 3) = S.c[place_of[k]][lane];
       return 0.5 * C.matrixL().solve(vector_of(full)).squaredNorm();
     };
-    const double elastic = spring(elastic_[point]), energy = scale_ * response.energy[lane];
+    const double elastic = spring(elastic_[point]), energy = scale * response.energy[lane];
     const double ratio = elastic > 0 && energy > 0 ? energy / elastic : 1;
-    for (std::size_t i = 0; i < prony_.g.size(); ++i)
-      energy_[point][lane] += ratio / prony_.g[i] * spring(parts_[i][point]);
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+      energy_[point][lane] += ratio / series.terms()[i].g[lane] * spring(parts_[i][point]);
   }
 }
 
 std::size_t PronyHistory::bytes() const {
   const std::size_t points = elastic_.size() + fixed_.size() + stress_.size() + parts_.size() * elastic_.size();
-  return points * sizeof(SymmetricLanes) + energy_.size() * sizeof(Lanes) +
-         (prony_.g.size() + prony_.tau.size() + 2 * decay_.size()) * sizeof(double);
+  std::size_t sum = points * sizeof(SymmetricLanes) + energy_.size() * sizeof(Lanes);
+  for (const PronySeries& series : series_) sum += series.bytes();
+  return sum;
 }
 
 }  // namespace msml::fe

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/elements/prony_series.hpp"
 #include "solver/materials/law.hpp"
-#include "solver/model.hpp"
 
 namespace msml::fe {
 
@@ -24,14 +24,18 @@ struct SymmetricLanes {
 /// w(S) = W S . C^-1 S / (S_e . C^-1 S_e), C = dS_e/dE: the energy of the spring of a Maxwell element where S_e is
 /// linear in E (Simo and Hughes 1998, doi 10.1007/b98904, section 10.2), and for every law g_i W after a sudden strain
 /// and its part exp(-2 t / tau_i) as that is held. 0 where C is not positive definite.
+/// Under plane stress S_e has no 33 component at any time, so that S has none either.
 class PronyHistory {
  public:
   PronyHistory() = default;
-  PronyHistory(const Prony& prony, int points, bool small_strain);
+  /// Of `points` quadrature points, with one series for all or one for each.
+  PronyHistory(std::vector<PronySeries> series, int points, bool small_strain);
 
-  bool empty() const { return prony_.g.empty(); }
+  bool empty() const { return series_.empty(); }
   /// Sets the step that follows.
   void begin_step(double dt);
+  /// Of the elastic stress in this step.
+  const Lanes& factor(std::size_t point) const { return of(point).factor(); }
   /// Elastic responses become viscoelastic ones: W <- factor W + Q : E, P <- factor P + F Q; the tangent is its
   /// derivative (for definite_tangent with the semidefinite part of Q).
   void apply(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
@@ -45,13 +49,11 @@ class PronyHistory {
   std::span<const Lanes> energy() const { return energy_; }
 
  private:
+  const PronySeries& of(std::size_t point) const { return series_[series_.size() == 1 ? 0 : point]; }
   void store(std::size_t point, const Gradients& gradient, const Response& response);
 
-  Prony prony_;
+  std::vector<PronySeries> series_;
   bool small_strain_ = false;
-  double scale_ = 1;                                ///< of the law to the instantaneous one
-  double factor_ = 1;                               ///< of the elastic stress in this step, scale included
-  std::vector<double> decay_, share_;               ///< exp(-x) and (1 - exp(-x)) / x of each term
   std::vector<SymmetricLanes> elastic_;             ///< S_e at the start of the step, per point
   std::vector<std::vector<SymmetricLanes>> parts_;  ///< h_i at the start of the step: [term][point]
   std::vector<SymmetricLanes> fixed_;               ///< Q, per point

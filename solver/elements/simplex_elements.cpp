@@ -7,9 +7,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/elements/history_values.hpp"
 #include "solver/elements/simplex_kernels.hpp"
 
 namespace msml::fe {
+namespace {
+
+template <class Batch>
+std::size_t element_of(const Batch& batch, int lane) {
+  return static_cast<std::size_t>(batch.first + lane);
+}
+
+}  // namespace
+
 template <int dimension, int nodes, int count>
 SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
     : numbering_(number(model)),
@@ -85,7 +95,7 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
   const std::vector<int> elements(first, first + batch.count);
   batch.laws = laws_of(model, region, elements, points);
   if (!region.prony.g.empty())
-    batch.history = PronyHistory(region.prony, count, batch.laws.laws.front()->small_strain());
+    batch.history = PronyHistory(series_of(region, elements, points), count, batch.laws.laws.front()->small_strain());
 }
 
 template <int dimension, int nodes, int count>
@@ -237,16 +247,9 @@ void SimplexElements<dimension, nodes, count>::end_step(Batch& batch, const Vect
   batch.history.end_step({H, count}, {response, count}, stored_energies_);
   if (!stored_energies_) return;
   batch.history.apply(Want::stress, {H, count}, {response, count});
-  batch.stored_beside = 0;
-  for (std::size_t q = 0; q < count; ++q)
-    for (int lane = 0; lane < batch.count; ++lane)
-      batch.stored_beside +=
-          batch.points[q].weight[lane] * (batch.history.energy()[q][lane] - response[q].energy[lane]);
-}
-
-template <int dimension, int nodes, int count>
-bool SimplexElements<dimension, nodes, count>::remembers() const {
-  return std::any_of(batches_.begin(), batches_.end(), [](const Batch& b) { return !b.history.empty(); });
+  Lanes weights[count];
+  for (int q = 0; q < count; ++q) weights[q] = batch.points[q].weight;
+  batch.stored_beside = fe::stored_beside(batch.history, response, weights, batch.count);
 }
 
 template <int dimension, int nodes, int count>
@@ -258,26 +261,13 @@ double SimplexElements<dimension, nodes, count>::stored_beside() const {
 
 template <int dimension, int nodes, int count>
 std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_energy() const {
-  if (!stored_energies_ || !remembers()) return nullptr;
-  auto values = std::make_shared<std::vector<double>>(numbering_.elements.size() * count, 0.0);
-  for (const Batch& batch : batches_)
-    for (std::size_t q = 0; q < batch.history.energy().size(); ++q)
-      for (int lane = 0; lane < batch.count; ++lane)
-        (*values)[static_cast<std::size_t>(batch.first + lane) * count + q] = batch.history.energy()[q][lane];
-  return values;
+  if (!stored_energies_) return nullptr;
+  return history_energies(batches_, numbering_.elements.size(), count, element_of<Batch>);
 }
 
 template <int dimension, int nodes, int count>
 std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_stress() const {
-  if (!remembers()) return nullptr;
-  auto values = std::make_shared<std::vector<double>>(numbering_.elements.size() * count * 6, 0.0);
-  for (const Batch& batch : batches_)
-    for (std::size_t q = 0; q < batch.history.stress().size(); ++q)
-      for (int lane = 0; lane < batch.count; ++lane)
-        for (std::size_t k = 0; k < 6; ++k)
-          (*values)[(static_cast<std::size_t>(batch.first + lane) * count + q) * 6 + k] =
-              batch.history.stress()[q].c[k][lane];
-  return values;
+  return history_stresses(batches_, numbering_.elements.size(), count, element_of<Batch>);
 }
 
 template class SimplexElements<1, 2>;

@@ -59,7 +59,6 @@ class SimplexElements final : public Elements {
   const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   static Rule<dimension> rule();
   void end_step(Batch& batch, const Vector& u) const;
-  bool remembers() const;
   void make_batches(const Model& model);
   void fill(Batch& batch, const Model& model) const;
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;

@@ -17,6 +17,7 @@ class SingleRotationElements final : public Elements {
   explicit SingleRotationElements(const Model& model) : standard_(model) {
     const auto& batches = standard_.batches();
     batches_.resize(batches.size());
+    stored_beside_.assign(batches.size(), 0);
     tbb::parallel_for(std::size_t(0), batches.size(), [&](std::size_t b) {
       batches_[b] = make_rotation_batch(
           batches[b], [&](int q, SimplexGradients<3, 10>& g) { standard_.shape_gradients(batches[b], q, g); });
@@ -27,6 +28,7 @@ class SingleRotationElements final : public Elements {
             batches_[b].X[a][i][lane] =
                 model.mesh->points(numbering().node_of[static_cast<std::size_t>(batches[b].node[lane][a])], i);
       move_corner(batches_[b]);
+      remember(model, batches[b], batches_[b]);
     });
   }
 
@@ -45,17 +47,63 @@ class SingleRotationElements final : public Elements {
 
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }
   void visit_points(const Vector& u, const PointsVisitor& visit) const override { standard_.visit_points(u, visit); }
+  void begin_step(double dt) override {
+    standard_.begin_step(dt);
+    tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) { fe::begin_step(dt, batches_[b]); });
+  }
+  /// The standard elements remember the stress at points, for results.
+  void end_step(const Vector& u) override {
+    standard_.end_step(u);
+    tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) { end_step(b, u); });
+  }
+  std::shared_ptr<const std::vector<double>> history_stress() const override { return standard_.history_stress(); }
+  std::shared_ptr<const std::vector<double>> history_energy() const override { return standard_.history_energy(); }
+  double stored_beside() const override {
+    double sum = 0;
+    for (const double beside : stored_beside_) sum += beside;
+    return sum;
+  }
   std::size_t bytes() const override { return standard_.bytes() + batches_.size() * sizeof(RotationBatch); }
   const Numbering& numbering() const override { return standard_.numbering(); }
   const PatternPtr& pattern() const override { return standard_.pattern(); }
 
  private:
+  using Batch = SimplexBatch<3, 10, 4>;
+
+  static void gather_all(const Batch& batch, const Vector& u, Lanes (&moved)[10][3]) {
+    for (int a = 0; a < 10; ++a)
+      for (int i = 0; i < 3; ++i) moved[a][i] = gather(batch, a, u.data() + i);
+  }
+
+  void remember(const Model& model, const Batch& batch, RotationBatch& own) const {
+    const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
+    if (region.prony.g.empty()) return;
+    const std::span<const int> elements(numbering().elements.data() + batch.first,
+                                        static_cast<std::size_t>(batch.count));
+    std::vector<Vec3> middles(elements.size(), Vec3::Zero());
+    for (std::size_t k = 0; k < elements.size(); ++k)
+      for (int a = 0; a < 4; ++a)
+        middles[k] += 0.25 * model.mesh->points.row(model.mesh->cell(elements[k])[a]).transpose();
+    own.history.emplace_back(series_of(region, elements, {&middles, 1}).front());
+  }
+
+  void end_step(std::size_t b, const Vector& u) {
+    Lanes moved[10][3];
+    gather_all(standard_.batches()[b], u, moved);
+    fe::end_step(moved, batches_[b]);
+    SimplexResult<3, 10> unused;
+    const RotationState state = evaluate_rotation(batches_[b], moved, unused);
+    stored_beside_[b] = 0;
+    for (const RotationHistory& history : batches_[b].history)
+      for (int lane = 0; lane < standard_.batches()[b].count; ++lane)
+        stored_beside_[b] += history.stored[lane] - state.energy[lane];
+  }
+
   Assembled add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
     const auto& batch = standard_.batches()[b];
     const RotationBatch& own = batches_[b];
     Lanes moved[10][3];
-    for (int a = 0; a < 10; ++a)
-      for (int i = 0; i < 3; ++i) moved[a][i] = gather(batch, a, u.data() + i);
+    gather_all(batch, u, moved);
     SimplexResult<3, 10> result;
     const RotationState state = evaluate_rotation(own, moved, result);
     Assembled found;
@@ -76,6 +124,7 @@ class SingleRotationElements final : public Elements {
 
   SimplexElements<3, 10> standard_;
   std::vector<RotationBatch> batches_;
+  std::vector<double> stored_beside_;  ///< of each batch
 };
 
 }  // namespace

@@ -15,6 +15,8 @@ namespace msml::fe {
 /// element keeps its angular momentum, which f = R q alone would not. Tangents: `tangent` is the Hessian of W
 /// (symmetric); `single_tangent`, `definite_tangent` and a law with tangent = rotated take R K R^T (Hauth and Strasser
 /// 2004; Mueller and Gross 2004 for one rotation per element). Results are measured with the rotation of each point.
+/// With a history (see PronyHistory) q = K d relaxes as it turns with the element, by the series at its middle: W of a
+/// step is factor d^T K d / 2 + fixed . d, and all else is the same.
 /// Where D is singular the polar rotation is not unique: D^-1 is bounded there. The model is checked: tet10 and
 /// linearElasticMaterial, strain = corotated.
 std::unique_ptr<Elements> make_single_rotation_elements(const Model& model);

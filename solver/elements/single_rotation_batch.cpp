@@ -46,7 +46,8 @@ Tensor<Lanes> inverse_of(const Tensor<Lanes>& D, const Tensor<Lanes>& U) {
 }
 
 /// q = K d and d . q / 2.
-Lanes apply_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&q)[10][3]) {
+template <class Displacements, class Forces>
+Lanes apply_stiffness(const RotationBatch& batch, const Displacements& d, Forces& q) {
   for (auto& row : q)
     for (Lanes& entry : row) entry = Lanes{};
   for (int b = 0; b < 10; ++b)
@@ -63,7 +64,19 @@ Lanes apply_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes
   return energy;
 }
 
-/// Y^T K, 3 x 3 for each node: column 3 b + j of row r is sum_a (e_r x d_a) . (-K_ab)_j; rows are rotations about axes.
+/// q = factor K d + fixed, with its energy.
+void relax(const RotationHistory& history, RotationState& state) {
+  const Lanes& factor = history.series.factor();
+  state.energy *= factor;
+  for (std::size_t a = 0; a < 10; ++a)
+    for (int i = 0; i < 3; ++i) {
+      state.q[a][i] = factor * state.q[a][i] + history.fixed[a][i];
+      state.energy += state.d[a][i] * history.fixed[a][i];
+    }
+}
+
+/// factor Y^T K, 3 x 3 for each node: column 3 b + j of row r is sum_a (e_r x d_a) . (-K_ab)_j; rows are rotations
+/// about axes.
 void rotate_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&N)[10][9]) {
   for (auto& row : N)
     for (Lanes& entry : row) entry = Lanes{};
@@ -83,6 +96,9 @@ void rotate_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes
       add(d[a], K, false, N[b]);
       if (a != b) add(d[b], K, true, N[a]);
     }
+  for (const RotationHistory& history : batch.history)
+    for (auto& row : N)
+      for (Lanes& entry : row) entry *= history.series.factor();
 }
 
 /// S' = Y^T K Y + sym(sum_a y_a q_a^T - (y_a . q_a) I - [w] U), y = X + d.
@@ -190,6 +206,35 @@ void move_corner(RotationBatch& batch) {
     for (int i = 0; i < 3; ++i) X[i] -= corner[i];
 }
 
+void begin_step(double dt, RotationBatch& batch) {
+  for (RotationHistory& history : batch.history) {
+    history.series.begin_step(dt);
+    RotationHistory::Displacements sum = {};
+    for (std::size_t k = 0; k < history.parts.size(); ++k)
+      for (std::size_t a = 0; a < 10; ++a)
+        for (int i = 0; i < 3; ++i) sum[a][i] += history.series.fixed(k, history.parts[k][a][i], history.elastic[a][i]);
+    apply_stiffness(batch, sum, history.fixed);
+  }
+}
+
+void end_step(const Lanes (&u)[10][3], RotationBatch& batch) {
+  if (batch.history.empty()) return;
+  SimplexResult<3, 10> unused;
+  const RotationState state = evaluate_rotation(batch, u, unused);
+  RotationHistory& history = batch.history.front();
+  const PronySeries& series = history.series;
+  RotationHistory::Displacements force;
+  history.stored = series.rest() * series.scale() * apply_stiffness(batch, state.d, force);
+  for (std::size_t k = 0; k < history.parts.size(); ++k) {
+    for (std::size_t a = 0; a < 10; ++a)
+      for (int i = 0; i < 3; ++i)
+        series.advance(k, series.scale() * state.d[a][i] - history.elastic[a][i], history.parts[k][a][i]);
+    history.stored += apply_stiffness(batch, history.parts[k], force) / (series.terms()[k].g * series.scale());
+  }
+  for (std::size_t a = 0; a < 10; ++a)
+    for (int i = 0; i < 3; ++i) history.elastic[a][i] = series.scale() * state.d[a][i];
+}
+
 RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result) {
   RotationState state;
   Tensor<Lanes> F{};
@@ -220,6 +265,7 @@ RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10]
     for (int i = 0; i < 3; ++i) state.d[a][i] -= batch.X[a][i];
   }
   state.energy = apply_stiffness(batch, state.d, state.q);
+  for (const RotationHistory& history : batch.history) relax(history, state);
   for (int a = 0; a < 10; ++a) {
     Vector3 moment;
     cross(state.d[a], state.q[a], moment);
@@ -254,10 +300,12 @@ void turn(const Tensor<Lanes>& R, const Lanes (&H)[55][9], SimplexResult<3, 10>&
 
 void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact,
                       SimplexResult<3, 10>& result) {
-  if (!exact) return turn(state.R, batch.K, result);
+  if (!exact && batch.history.empty()) return turn(state.R, batch.K, result);
+  const Lanes factor = batch.history.empty() ? lanes_of(1) : batch.history.front().series.factor();
   Lanes H[55][9];
   for (int k = 0; k < 55; ++k)
-    for (int i = 0; i < 9; ++i) H[k][i] = batch.K[k][i];
+    for (int i = 0; i < 9; ++i) H[k][i] = factor * batch.K[k][i];
+  if (!exact) return turn(state.R, H, result);
   add_rotation_terms(batch, state, H);
   turn(state.R, H, result);
 }

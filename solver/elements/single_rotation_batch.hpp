@@ -7,12 +7,27 @@
 
 namespace msml::fe {
 
+/// What eight viscoelastic elements remember: the series relaxes q = K d in the frame that turns with the element, as
+/// PronyHistory does S: q = factor K d + fixed. Since that is linear in d, kept are the displacements e_i of Maxwell's
+/// springs, h_i = K e_i, which hold e_i . K e_i / (2 g_i).
+struct RotationHistory {
+  using Displacements = std::array<Lanes[3], 10>;
+  explicit RotationHistory(const PronySeries& of) : series(of), elastic(), parts(of.terms().size()), fixed() {}
+
+  PronySeries series;
+  Displacements elastic;             ///< d at the start of the step, times the scale of the series
+  std::vector<Displacements> parts;  ///< e_i at the start of the step
+  Displacements fixed;
+  Lanes stored = {};  ///< energy at the end of the last step
+};
+
 /// What eight elements keep. Unused lanes have K = 0.
 struct RotationBatch {
-  Lanes X[10][3];     ///< reference positions, relative to corner 0
-  Lanes g[4][3];      ///< gradients of the corners' linear shape functions
-  Lanes K[55][9];     ///< stiffness at rest; block (a, b), a <= b, at b(b+1)/2 + a
-  bool exact = true;  ///< the law asks for the derivative of the force as tangent
+  Lanes X[10][3];                        ///< reference positions, relative to corner 0
+  Lanes g[4][3];                         ///< gradients of the corners' linear shape functions
+  Lanes K[55][9];                        ///< stiffness at rest; block (a, b), a <= b, at b(b+1)/2 + a
+  bool exact = true;                     ///< the law asks for the derivative of the force as tangent
+  std::vector<RotationHistory> history;  ///< one, or none where elastic
 };
 
 /// What one evaluation leaves for the tangent; see make_single_rotation_elements for the letters.
@@ -28,6 +43,12 @@ RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
 
 /// Makes X relative to corner 0.
 void move_corner(RotationBatch& batch);
+
+/// Sets the step that follows, of elements with a history.
+void begin_step(double dt, RotationBatch& batch);
+
+/// Takes over its end at u; finds the stored energy too.
+void end_step(const Lanes (&u)[10][3], RotationBatch& batch);
 
 /// Forces of eight elements displaced by u into result.force (overwritten).
 RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result);

@@ -19,6 +19,9 @@ class BatchSplit {
 
   const Lanes& modulus(std::size_t point) const { return of(point).modulus; }        ///< infinite if incompressible
   const Lanes& compliance(std::size_t point) const { return of(point).compliance; }  ///< 1 / modulus
+  /// The modulus with which an incompressible law is as good as one, for joined(): 1e7 shear moduli leave an error of
+  /// 1e-7 in what the shape stores.
+  double largest_modulus(std::size_t point) const { return 1e7 * of(point).rest->shear_modulus(); }
   /// Energy and derivatives of rest and of g at the points, as Law::evaluate.
   void evaluate_rest(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
   void evaluate_constraint(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const;
@@ -32,5 +35,11 @@ class BatchSplit {
   const Point& of(std::size_t point) const { return points_[points_.size() == 1 ? 0 : point]; }
   std::vector<Point> points_;
 };
+
+/// The whole response at a point from those of rest and of g: W = rest + p^2/(2 k), P = rest + p dg/dF, and with
+/// `tangents` rest + p d2g/dF2 + k dg/dF x dg/dF, where k is at most `largest` (an infinite one would let nothing else
+/// be seen).
+Response joined(const Response& rest, const Response& volume, const Lanes& p, Lanes modulus, double largest,
+                bool tangents);
 
 }  // namespace msml::fe

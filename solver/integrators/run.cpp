@@ -22,7 +22,7 @@ State Run::state() const {
           to_points(numbering, now.reaction),
           now.energies,
           equations.elements().history_stress(),
-          to_pressures(numbering, now.u),
+          to_pressures(numbering, equations.elements().acting(now.u)),
           now.load_factor,
           to_corner_pressures(numbering, now.u),
           equations.elements().history_energy(),
