@@ -237,15 +237,6 @@ bool advance(Stage& stage, double target) {
   return true;
 }
 
-/// Displacements that a run begins with bring their pressures along.
-void settle_pressures(Run& run) {
-  if (run.now.u.isZero(0)) return;
-  if (run.newton.settle_pressures(run.now.u) > 0)
-    run.outcome.notes.push_back(
-        "the initial displacement says nothing of the pressure in incompressible regions: the first state has none "
-        "there, and its stress and acceleration are without it");
-}
-
 }  // namespace
 
 void run_implicit(Run& run) {
@@ -258,7 +249,7 @@ void run_implicit(Run& run) {
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     if (s == 0) run.hold_start(supports);
     if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
-    if (s == 0) settle_pressures(run);
+    if (s == 0) run.settle_pressures();
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
     run.set_reactions(run.newton.forces().residual(), supports, run.now.time);

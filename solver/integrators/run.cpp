@@ -86,8 +86,17 @@ bool Run::sound_start() {
   return false;
 }
 
+void Run::settle_pressures() {
+  if (now.u.isZero(0)) return;
+  if (newton.settle_pressures(now.u) > 0)
+    outcome.notes.push_back(
+        "the initial displacement says nothing of the pressure in incompressible regions: the first state has none "
+        "there, and its stress and acceleration are without it");
+}
+
 bool Run::start_at_rest() {
   refuse_pushed_bodies();
+  settle_pressures();
   newton.prepare(now.u, {});
   newton.rest();
   if (!sound_start()) return false;

@@ -49,6 +49,8 @@ struct Run {
   void hold_start(const Supports& supports);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
+  /// Displacements that a run begins with bring their pressures along.
+  void settle_pressures();
   /// False where the forces of the state that a run begins with are not finite; the outcome is explained then.
   /// Otherwise materials with a history take it over, as if its strain had come at once just before.
   bool sound_start();

@@ -175,6 +175,33 @@ TEST(PronyElements, ResultsRelaxWithTheForces) {
   }
 }
 
+// Held where it begins, a body has the stress of the law first, with its pressure, which then relaxes as G(t).
+TEST(PronyElements, RelaxFromAnInitialDisplacement) {
+  for (const Way& way : ways)
+    for (const Integrator integrator : {Integrator::quasi_static, Integrator::implicit_euler, Integrator::newmark}) {
+      Model model = viscous_model(way, unit_mesh(1, way.kind), {.youngs_modulus = 1000});
+      model.settings.integrator = integrator;
+      model.initial_displacement = 0.01 * model.mesh->points;
+      Prescribed held{.name = "held", .nodes = points_where(*model.mesh, [](const Vec3&) { return true; })};
+      for (const int n : held.nodes) held.values.push_back(model.initial_displacement.row(n).transpose());
+      model.steps[0] = {.name = "hold", .dt = 0.05, .count = 4, .gravity = Vec3::Zero(), .prescribed = {held}};
+      // Strain e in two or three directions; the corotated stress is 1 / 1.01 (space) of it as F S F^T / J.
+      const double elastic = way.plane == Plane::stress ? 0.01 * 1000 / 0.7 : 0.01 * 1000 / 0.4;
+      double first = 0;
+      const Outcome outcome = solve(model, [&](const State& state) {
+        const double t = state.time, share = 0.5 + 0.3 * std::exp(-t / 0.1) + 0.2 * std::exp(-t);
+        const double stress = element_results(model, state).cauchy[0];
+        if (t == 0) {
+          EXPECT_NEAR(stress, elastic, 0.025 * elastic) << way.name;
+          first = stress;
+        }
+        EXPECT_NEAR(stress, share * first, 1e-9 * elastic) << way.name << " " << name(integrator) << " at " << t;
+        return true;
+      });
+      EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    }
+}
+
 /// A block pulled to a stretch at once, free at its sides; reactions in x, over the area of 1.
 std::vector<double> pulled(Model& model, double stretch) {
   const Mesh& mesh = *model.mesh;
