@@ -127,7 +127,7 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
     fe::Region region{.name = region_name(*records[i], i), .law = nullptr, .elements = owners.elements(i)};
     set_material(material, body, region);
     if (const Record* mass = first_of(*records[i], "mass")) set_density(*mass, body, region);
-    if (const Record* series = first_of(*records[i], "prony")) region.prony = make<fe::Prony>(*series);
+    if (const Record* series = first_of(*records[i], "prony")) set_prony(*series, body, region);
     if (!region.elements.empty()) regions.push_back(std::move(region));
   }
   return regions;

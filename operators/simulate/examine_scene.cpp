@@ -40,7 +40,8 @@ bool complete(const Record& record) {
     if (varies(record.values[i]) || named_direction(slots[i], record.values[i]) ||
         (slots[i].required && type(record.values[i]) == Type::nothing))
       return false;
-  return text_of(record, "fields").empty() || record.description->category() != "material";
+  const std::string& category = record.description->category();
+  return text_of(record, "fields").empty() || (category != "material" && category != "prony");
 }
 
 /// Hands what `check` throws to `fault`, at the place of the record where it has none of its own.
@@ -71,8 +72,11 @@ Part part_of(const Record& record, std::size_t position, bool particles, const R
   Part part{.region = {.name = region_name(record, position), .law = nullptr},
             .material = first_of(record, "material"),
             .prony = first_of(record, "prony")};
-  if (part.prony != nullptr && complete(*part.prony))
-    attempt(*part.prony, fault, [&] { part.region.prony = make<fe::Prony>(*part.prony); });
+  if (part.prony != nullptr)
+    attempt(*part.prony, fault, [&] {
+      VaryingRecord::check(*part.prony);
+      if (complete(*part.prony)) part.region.prony = make<fe::Prony>(*part.prony);
+    });
   if (part.material == nullptr) return part;
   const Record& material = *part.material;
   attempt(material, fault, [&] {

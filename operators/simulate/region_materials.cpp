@@ -29,7 +29,7 @@ void set_material(const Record& material, const Body& body, fe::Region& region) 
   const VaryingRecord record(material, body, region.elements);
   if (region.elements.empty()) return;
   const auto middle = [&](int e) { return centroid(*body.mesh, e); };
-  if (record.inside())
+  if (record.inside() || record.lists())
     for (const int e : region.elements) make<LawPtr>(record.at(e, middle(e)));  // are all in range?
   const int first = region.elements.front();
   region.law = make<LawPtr>(record.at(first, middle(first)));
@@ -56,6 +56,29 @@ void set_density(const Record& mass, const Body& body, fe::Region& region) {
   region.density = make<double>(record.at(first, centroid(*body.mesh, first)));
   if (!record.varies()) return;
   region.density_at = [record](int element, const Vec3& X) { return make<double>(record.at(element, X)); };
+}
+
+void set_prony(const Record& series, const Body& body, fe::Region& region) {
+  VaryingRecord::check(series);
+  const VaryingRecord record(series, body, region.elements);
+  if (region.elements.empty()) return;
+  const auto at = [record, mesh = body.mesh](int element, const Vec3& X) {
+    try {
+      return make<fe::Prony>(record.at(element, X));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}, in element {} at {}", error.what(), element, place(X)), error.where());
+    }
+  };
+  if (!record.varies()) {
+    region.prony = make<fe::Prony>(series);
+    return;
+  }
+  for (const int e : region.elements) {
+    const fe::Prony here = at(e, centroid(*body.mesh, e));
+    if (region.prony.g.empty()) region.prony = here;
+    for (std::size_t i = 0; i < here.tau.size(); ++i) region.prony.tau[i] = std::min(region.prony.tau[i], here.tau[i]);
+  }
+  region.prony_at = at;
 }
 
 }  // namespace msml::simulation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The law and the density of a region, which may differ from place to place.
+// The law, the density and the relaxation of a region, which may differ from place to place.
 #pragma once
 #include "msml/core/describe.hpp"
 #include "operators/simulate/body.hpp"
@@ -13,5 +13,10 @@ void set_material(const Record& material, const Body& body, fe::Region& region);
 
 /// Sets the density of the region from the tag mass.
 void set_density(const Record& mass, const Body& body, fe::Region& region);
+
+/// Sets the relaxation series of the region from the tag prony: `prony_at` where its numbers vary, and then `prony` to
+/// a typical one with the shortest times. Throws Error as VaryingRecord does, and for what the series refuses at a
+/// place.
+void set_prony(const Record& series, const Body& body, fe::Region& region);
 
 }  // namespace msml::simulation

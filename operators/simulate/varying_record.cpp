@@ -3,6 +3,7 @@
 #include "operators/simulate/varying_record.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "operators/simulate/records.hpp"
@@ -25,24 +26,45 @@ const Field& field_of(const Record& record, const std::string& attribute, const 
                              known.empty() ? ", which has none" : "; it has " + known));
 }
 
-/// An attribute and the name of the cell field that it comes from.
+/// An attribute, or an entry of one that is a list, and the name of the cell field that it comes from.
 struct Named {
   std::size_t slot;
+  int entry, count;  ///< the numbers from `entry` on
   std::string field;
 };
 
-/// The attribute `fields`: "youngModulus=E mu=stiffness".
+/// Which numbers `attribute` means: "youngModulus", "mu", "mu[2]".
+Named numbers_of(const Record& record, const std::string& attribute) {
+  const std::string name = attribute.substr(0, attribute.find('['));
+  const int found = record.description->find(name);
+  const auto slot = static_cast<std::size_t>(found);
+  const Type type = found < 0 ? Type::nothing : record.description->slots()[slot].type;
+  if (type != Type::formula && type != Type::formulas)
+    refuse(record, fmt::format("fields: '{}' is no attribute that takes a number", name));
+  const auto* list = std::get_if<Formulas>(&record.values[slot]);
+  const int length = list != nullptr ? static_cast<int>(list->size()) : 0;
+  if (type == Type::formulas && length == 0)
+    refuse(record, fmt::format("fields: '{}' is left out: give the list, with typical values", name));
+  if (name == attribute) return {slot, 0, std::max(length, 1), {}};
+  int entry = 0;
+  const char *first = attribute.data() + name.size() + 1, *last = attribute.data() + attribute.size() - 1;
+  const auto [end, error] = std::from_chars(first, std::max(first, last), entry);
+  if (error != std::errc() || end != last || *last != ']' || entry < 1 || entry > length)
+    refuse(record, fmt::format("fields: '{}' is no number of {}, {}", attribute, name,
+                               length == 0 ? std::string("which is one number: leave out the brackets")
+                                           : fmt::format("which has those from {0}[1] to {0}[{1}]", name, length)));
+  return {slot, entry - 1, 1, {}};
+}
+
+/// The attribute `fields`: "youngModulus=E mu[2]=stiffness".
 std::vector<Named> named_numbers(const Record& record) {
   std::vector<Named> named;
   for (const std::string& part : list_parts(text_of(record, "fields"))) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos || equals + 1 == part.size())
       refuse(record, fmt::format("fields: '{}' is no pair attribute=field", part));
-    const std::string attribute = part.substr(0, equals);
-    const int slot = record.description->find(attribute);
-    if (slot < 0 || record.description->slots()[static_cast<std::size_t>(slot)].type != Type::formula)
-      refuse(record, fmt::format("fields: '{}' is no attribute that takes a number", attribute));
-    named.push_back({static_cast<std::size_t>(slot), part.substr(equals + 1)});
+    named.push_back(numbers_of(record, part.substr(0, equals)));
+    named.back().field = part.substr(equals + 1);
   }
   return named;
 }
@@ -106,37 +128,49 @@ void VaryingRecord::find_fields() {
     const auto* text = std::get_if<std::string>(&record_.values[s]);
     if (slots[s].unit == "direction" && text != nullptr && fe::direction_numbers(*text).empty() &&
         direction_formulas(*text).empty())
-      fields_.push_back({s, &field_of(record_, slots[s].name, *text, *mesh_, 3)});
+      fields_.push_back({s, -1, &field_of(record_, slots[s].name, *text, *mesh_, 3)});
   }
-  for (const auto& [slot, field] : named_numbers(record_))
-    fields_.push_back({slot, &field_of(record_, slots[slot].name, field, *mesh_, 1)});
+  for (const auto& [slot, entry, count, field] : named_numbers(record_))
+    fields_.push_back({slot, entry, &field_of(record_, slots[slot].name, field, *mesh_, count)});
 }
 
 void VaryingRecord::check_fields(const std::vector<int>& elements) const {
-  for (const auto& [slot, field] : fields_) {
+  for (const auto& [slot, entry, field] : fields_) {
     const Slot& described = record_.description->slots()[slot];
     for (const int e : elements) {
       const double* v = field->values.data() + static_cast<std::size_t>(e * field->components);
       const auto at = [&] { return fmt::format("in element {} at {}", e, place(centroid(*mesh_, e))); };
-      if (field->components == 3) {
+      if (entry < 0) {
         const double length = std::hypot(v[0], v[1], v[2]);
         if (!(length > 0) || !std::isfinite(length))
           refuse(record_, fmt::format("{}: the field '{}' holds ({:g}, {:g}, {:g}) {}, which is no direction",
                                       described.name, field->name, v[0], v[1], v[2], at()));
-      } else if (!described.range.contains(v[0])) {
-        refuse(record_, fmt::format("{}: the field '{}' holds {:g} {}, which is not {}", described.name, field->name,
-                                    v[0], at(), described.range.str()));
+        continue;
       }
+      for (int k = 0; k < field->components; ++k)
+        if (!described.range.contains(v[k]))
+          refuse(record_, fmt::format("{}: the field '{}' holds {:g} {}, which is not {}", described.name, field->name,
+                                      v[k], at(), described.range.str()));
     }
   }
 }
 
 void VaryingRecord::put(const Source& source, int element, Record& record) const {
   const double* v = source.field->values.data() + static_cast<std::size_t>(element * source.field->components);
-  if (source.field->components == 3)
-    record.values[source.slot] = direction_text(v[0], v[1], v[2]);
+  Value& value = record.values[source.slot];
+  if (source.entry < 0)
+    value = direction_text(v[0], v[1], v[2]);
+  else if (auto* list = std::get_if<Formulas>(&value))
+    for (int k = 0; k < source.field->components; ++k)
+      (*list)[static_cast<std::size_t>(source.entry + k)] = Formula(v[k]);
   else
-    record.values[source.slot] = Formula(v[0]);
+    value = Formula(v[0]);
+}
+
+bool VaryingRecord::lists() const {
+  return std::any_of(fields_.begin(), fields_.end(), [&](const Source& source) {
+    return std::holds_alternative<Formulas>(record_.values[source.slot]);
+  });
 }
 
 Record VaryingRecord::at(int element, const Vec3& X) const {

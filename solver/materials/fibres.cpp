@@ -42,6 +42,14 @@ Direction<Lanes> direction(const Record& record, Key<std::string> key) {
   return {lanes_of(numbers[0] / length), lanes_of(numbers[1] / length), lanes_of(numbers[2] / length)};
 }
 
+/// Throws Error where the sheets would lie along the fibres.
+void check_across(const Record& record, const Direction<Lanes>& fiber, const Direction<Lanes>& sheet) {
+  const double cosine = std::abs(fiber[0][0] * sheet[0][0] + fiber[1][0] * sheet[1][0] + fiber[2][0] * sheet[2][0]);
+  if (cosine > 1 - 1e-9)
+    throw Error(record.tag() + ": sheet lies along fiber; give a direction across the fibres, or leave sheet out",
+                record.where);
+}
+
 }  // namespace
 
 std::vector<double> direction_numbers(const std::string& text) {
@@ -126,14 +134,18 @@ MaterialFactory guccione_material() {
   const auto bt = material.parameter("bt", {.range = positive(), .doc = "across the fibres"});
   const auto bfs = material.parameter("bfs", {.range = positive(), .doc = "in shear between along and across"});
   const auto fiber = describe_direction(material, "fiber", false, "direction of the fibres");
+  const auto sheet = describe_direction(
+      material, "sheet", true, "a direction across the fibres; may be left out, since it changes nothing (see below)");
   const VolumeKeys keys = describe_volume(material);
   material.note(
-      "This is the transversely isotropic form of 1991: Q is the same whichever way the sheets lie, so there is no "
-      "attribute sheet.");
+      "This is the transversely isotropic form of 1991: with bt and bfs for all directions across the fibres Q is the "
+      "same whichever way the sheets lie. A sheet that is given is checked not to lie along the fibres.");
   material.note(field_note);
   material.build([=](const Record& record) {
+    const Direction<Lanes> along = direction(record, fiber);
+    if (record.has(sheet)) check_across(record, along, direction(record, sheet));
     const Guccione<Lanes> kernel{lanes_of(record[C]), lanes_of(record[bf]), lanes_of(record[bt]), lanes_of(record[bfs]),
-                                 direction(record, fiber)};
+                                 along};
     return make_isochoric(record, keys, kernel, record[C] * record[bt] / 2, false);
   });
   return material;

@@ -141,6 +141,68 @@ TEST(Materials, TakeExpressionsInListsAndDirections) {
       HasSubstr("fiber = 't' depends on t"));
 }
 
+TEST(Materials, TakeEntriesOfListsFromCellFields) {
+  const Language language;
+  const auto model_of = [&](const std::string& tag, const Attributes& attributes) {
+    Listener listener;
+    Scene scene = bar(language, tag, attributes);
+    auto mesh = std::make_shared<Mesh>(*scene.mesh);
+    Field both{.name = "both", .components = 2, .values = {}};
+    for (int e = 0; e < mesh->cell_count(); ++e) both.values.insert(both.values.end(), {100.0 + e, 200.0 - e});
+    mesh->cell_fields.push_back(both);
+    scene.mesh = mesh;
+    return build_model(scene.record(language), listener, 1);
+  };
+  const std::vector<int> elements{3, 7};
+  const auto same = [&](const std::string& tag, const Attributes& varying, const Attributes& there) {
+    const auto one = model_of(tag, varying), other = model_of(tag, there);
+    const auto law = one.model.regions[0].local_law(elements);
+    EXPECT_LT((stress(*law, 1.3, 1.2, 0.8, 1) - stress(*other.model.regions[0].law, 1.3, 1.2, 0.8, 0)).norm(), 1e-9)
+        << tag;
+    EXPECT_GT((stress(*law, 1.3, 1.2, 0.8, 1) - stress(*law, 1.3, 1.2, 0.8, 0)).norm(), 1e-2) << tag;
+  };
+  // E = 1700 and both = (107, 193) in element 7.
+  const Attributes ogden{{"mu", Formulas{300.0, 50.0}}, {"alpha", Formulas{2.0, -2.0}}, {"bulkModulus", 500.0}};
+  same("ogdenMaterial", with(ogden, "fields", std::string("mu[1]=E")), with(ogden, "mu", Formulas{1700.0, 50.0}));
+  same("ogdenMaterial", with(ogden, "fields", std::string("mu=both")), with(ogden, "mu", Formulas{107.0, 193.0}));
+  const Attributes reduced{{"c", Formulas{1.0, 2.0}}, {"bulkModulus", 500.0}};
+  same("reducedPolynomialMaterial", with(reduced, "fields", std::string("c[2]=E")),
+       with(reduced, "c", Formulas{1.0, 1700.0}));
+  const Attributes polynomial{{"terms", Formulas{1.0, 0.0, 9.0, 0.0, 1.0, 60.0}}, {"bulkModulus", 500.0}};
+  same("polynomialMaterial", with(polynomial, "fields", std::string("terms[3]=E")),
+       with(polynomial, "terms", Formulas{1.0, 0.0, 1700.0, 0.0, 1.0, 60.0}));
+
+  const auto fault = [&](const std::string& fields) {
+    return message(language, bar(language, "ogdenMaterial", with(ogden, "fields", fields)));
+  };
+  EXPECT_THAT(fault("mu[3]=E"), HasSubstr("fields: 'mu[3]' is no number of mu, which has those from mu[1] to mu[2]"));
+  EXPECT_THAT(fault("mu[0]=E"), HasSubstr("'mu[0]' is no number of mu"));
+  EXPECT_THAT(fault("mu[=E"), HasSubstr("'mu[' is no number of mu"));
+  EXPECT_THAT(fault("bulkModulus[1]=E"), HasSubstr("which is one number: leave out the brackets"));
+  EXPECT_THAT(fault("mu=E"), HasSubstr("mu is taken from the cell field 'E', which has 1 component instead of 2"));
+  EXPECT_THAT(
+      message(language, bar(language, "polynomialMaterial", with(polynomial, "fields", std::string("terms[1]=E")))),
+      HasSubstr("terms"));
+}
+
+TEST(Guccione, MayHaveASheetWhichChangesNothing) {
+  const Language language;
+  const Attributes muscle{{"C", 100.0}, {"bf", 18.0},           {"bt", 4.0},
+                          {"bfs", 2.0}, {"bulkModulus", 500.0}, {"fiber", std::string("1 0 0")}};
+  const auto law = [&](const Attributes& attributes) {
+    Listener listener;
+    return build_model(bar(language, "guccioneMaterial", attributes).record(language), listener, 1)
+        .model.regions[0]
+        .law;
+  };
+  const Mat3 plain = stress(*law(muscle), 1.1, 1.2, 0.9, 0);
+  EXPECT_GT(plain.norm(), 1);
+  EXPECT_EQ(stress(*law(with(muscle, "sheet", std::string("0 1 0"))), 1.1, 1.2, 0.9, 0), plain);
+  EXPECT_EQ(stress(*law(with(muscle, "sheet", std::string("1 0 2"))), 1.1, 1.2, 0.9, 0), plain);
+  EXPECT_THAT(message(language, bar(language, "guccioneMaterial", with(muscle, "sheet", std::string("-2 0 0")))),
+              HasSubstr("sheet lies along fiber"));
+}
+
 TEST(Materials, AreClampedBelowAStretchThatVaries) {
   const Language language;
   Listener listener;
@@ -218,6 +280,35 @@ TEST(Materials, RefuseIncompressibleLawsOutsideMixedElements) {
   } catch (const Error& error) {
     EXPECT_THAT(error.str(), HasSubstr("needs a mesh with formulation=\"mixed\""));
   }
+}
+
+TEST(Prony, MayDifferFromPlaceToPlace) {
+  const Language language;
+  const auto scene = [&](const Attributes& attributes) {
+    Scene one = bar(language, "linearElasticMaterial", {{"youngModulus", 1.0}, {"poissonRatio", 0.25}});
+    one.regions[0].children.push_back(language.tag("prony", "prony", attributes));
+    return one;
+  };
+  Listener listener;
+  const Attributes varying{{"g", Formulas{Formula("0.1 + Z/10"), 0.2}},
+                           {"tau", Formulas{1.0, Formula("0.5 + X")}},
+                           {"fields", std::string("tau[1]=E")},
+                           {"given", std::string("longTerm")}};
+  const auto simulation = build_model(scene(varying).record(language), listener, 1);
+  const fe::Region& region = simulation.model.regions[0];
+  ASSERT_TRUE(region.prony_at);
+  const fe::Prony there = region.prony_at(7, {0.5, 0, 2});
+  EXPECT_THAT(there.g, testing::ElementsAre(testing::DoubleNear(0.3, 1e-15), 0.2));
+  EXPECT_THAT(there.tau, testing::ElementsAre(1700, 1));
+  EXPECT_TRUE(there.long_term);
+  ASSERT_EQ(region.prony.tau.size(), 2u);
+  EXPECT_EQ(region.prony.tau[0], 1000);  // the shortest
+  EXPECT_THAT(message(language, scene({{"g", Formulas{Formula("Z"), 0.2}}, {"tau", Formulas{1.0, 1.0}}})),
+              HasSubstr("g = "));
+  EXPECT_THAT(message(language, scene({{"g", Formulas{Formula("Z/2"), 0.2}}, {"tau", Formulas{1.0, 1.0}}})),
+              testing::AllOf(HasSubstr("is not < 1, in element "), HasSubstr(" at (")));
+  EXPECT_THAT(message(language, scene({{"g", Formulas{Formula("t")}}, {"tau", Formulas{1.0}}})),
+              HasSubstr("depends on t"));
 }
 
 TEST(Prony, SaysHowTimePassesInStaticsAndWarnsOfLongSteps) {
