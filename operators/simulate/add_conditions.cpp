@@ -145,7 +145,7 @@ void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe
   std::vector<fe::Step>& steps = model.steps;
   std::vector<Placed> placed;
   collect(root, "", placed);
-  const Surroundings around{body.kind, body.scalar, changes_thickness(model), &model.settings};
+  const Surroundings around{body.kind, body.scalar, &model.settings};
   std::vector<std::vector<fe::Prescribed>> lasting(steps.size());
   for (const Placed& each : placed) {
     check_condition(*each.record, around);

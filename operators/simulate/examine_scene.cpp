@@ -134,8 +134,7 @@ void examine_combinations(const Record& args, const Outline& outline, const Repo
 void examine_conditions(const Record& args, const Outline& outline, const Report& fault) {
   const auto known = std::find_if(outline.parts.begin(), outline.parts.end(),
                                   [](const Part& part) { return part.region.law != nullptr; });
-  Surroundings around{
-      .kind = outline.kind, .thinning = changes_thickness(outline.model), .settings = &outline.model.settings};
+  Surroundings around{.kind = outline.kind, .settings = &outline.model.settings};
   if (known != outline.parts.end()) around.scalar = known->region.law->components() == 1;
   for (const Record* condition : all_of(args, "constraint"))
     attempt(*condition, fault, [&] { check_condition(*condition, around); });

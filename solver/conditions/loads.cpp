@@ -105,6 +105,7 @@ void add_face_load(const Model& model, const FaceLoad& load, const Numbering& nu
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (!load.pressures.empty()) faces[i].pressure = pick(load.pressures, i);
     if (source) faces[i].source = static_cast<int>(loads.sources.size());
+    faces[i].stretch = edge_thickness(model, numbering, load.faces[i], source);
     loads.followers.push_back(faces[i]);
   }
   if (source) loads.sources.push_back(std::move(facts));
@@ -135,16 +136,34 @@ double pressure_at(const ActingLoads& loads, const FollowerFace& face, const Vec
   return p * (source.factor ? source.factor(loads.time) : 1.0) * (follows ? 1.0 : loads.share);
 }
 
-/// -df_a/du_b = p int N_a ([x,r]x N_b,s - [x,s]x N_b,r).
+/// -df_a/du_b = p w N_a normal (d stretch/du_b) for all nodes b of the element, at point k of an edge.
+template <int nodes>
+void add_thinning(const FollowerFace& face, const SidePoint<nodes>& point, const Vec3& push,
+                  const EdgeThickness::Stretch& stretch, int k, BlockMatrix& matrix) {
+  const std::vector<int>& all = face.stretch->nodes();
+  for (std::size_t a = 0; a < nodes; ++a)
+    for (std::size_t b = 0; b < all.size(); ++b) {
+      double* out = matrix.values.data() + 9 * static_cast<std::size_t>(matrix.pattern->find(face.nodes[a], all[b]));
+      for (Eigen::Index i = 0; i < 3; ++i)
+        for (std::size_t j = 0; j < 2; ++j)
+          out[3 * static_cast<std::size_t>(i) + j] -= point.N[a] * push[i] * stretch.slope[b][j][k];
+    }
+}
+
+/// -df_a/du_b = p int N_a ([x,r]x N_b,s - [x,s]x N_b,r), and what thinning adds.
 void add_follower(const ActingLoads& loads, const FollowerFace& face, const Vector& X, const Vector& u, Vector& force,
                   BlockMatrix* matrix) {
   const auto reference = [&](int a) -> Vec3 { return at(X, face.nodes[a]); };
   const auto x = [&](int a) -> Vec3 { return at(X, face.nodes[a]) + at(u, face.nodes[a]); };
+  const auto stretch = face.stretch ? face.stretch->at(u) : EdgeThickness::Stretch{lanes_of(1), {}};
+  int index = 0;
   for_side_points(face, x, face.source >= 0, [&](const auto& point) {
-    const double pressure = pressure_at(loads, face, interpolate(point, reference));
+    const int k = face.stretch ? index++ : 0;
+    const double flat = pressure_at(loads, face, interpolate(point, reference)), pressure = flat * stretch.value[k];
     const Vec3 push = -pressure * point.weight * point.r.cross(point.s);
     for (std::size_t a = 0; a < point.N.size(); ++a) force.segment<3>(3 * face.nodes[a]) += point.N[a] * push;
     if (!matrix) return;
+    if (face.stretch) add_thinning(face, point, push / stretch.value[k], stretch, k, *matrix);
     const Mat3 R = cross(point.r), S = cross(point.s);
     for (std::size_t a = 0; a < point.N.size(); ++a)
       for (std::size_t b = 0; b < point.N.size(); ++b) {

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "solver/conditions/edge_thickness.hpp"
 #include "solver/conditions/springs.hpp"
 #include "solver/elements/assembly.hpp"
 
@@ -17,6 +18,7 @@ struct FollowerFace {
   int end = 0;                     ///< of lines: 0 looks to -x, 1 to +x
   double thickness = 1;            ///< of plane bodies; cross-section of lines
   double pressure = 0;
+  std::shared_ptr<const EdgeThickness> stretch = {};  ///< of the thickness; null where that does not change
   int source = -1;  ///< index into LoadSet::sources, whose function and factor give the pressure; -1: `pressure` alone
 };
 
@@ -45,8 +47,10 @@ LoadSet make_loads(const Model& model, const Step& step, const Numbering& number
 void add_dead(const ActingLoads& loads, Vector& force);
 
 /// force += follower forces at positions X + u: f_a = -p int N_a (x,r cross x,s) dr ds. If matrix is given, adds
-/// -df/du. It is symmetric only where the pressure is uniform and the rim of the loaded surface is held or closed
-/// (Schweizerhof and Ramm 1984, doi 10.1016/0045-7949(84)90174-0); in a slender body the rest is not small.
+/// -df/du. Under plane stress with finite strains the thickness of an edge is that of the deformed body, and depends on
+/// all nodes of the element. -df/du is symmetric only where the pressure is uniform and the rim of the loaded surface
+/// is held or closed (Schweizerhof and Ramm 1984, doi 10.1016/0045-7949(84)90174-0); in a slender body the rest is not
+/// small.
 void add_followers(const ActingLoads& loads, const Vector& X, const Vector& u, Vector& force, BlockMatrix* matrix);
 
 }  // namespace msml::fe

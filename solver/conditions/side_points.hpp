@@ -35,11 +35,16 @@ void for_face_points(const Position& x, bool varying, const Body& body) {
   }
 }
 
+/// Gauss's rule along an edge of `nodes` nodes, from 0 to 1.
+inline const Rule<1>& edge_rule(int nodes, bool varying) {
+  static const Rule<1> linear[2] = {line_rule(1), line_rule(3)}, quadratic[2] = {line_rule(2), line_rule(4)};
+  return nodes == 2 ? linear[varying] : quadratic[varying];
+}
+
 /// The same for an edge of a triangle; counter-clockwise edges have r x e_z outside.
 template <int nodes, class Position, class Body>
 void for_edge_points(const Position& x, double thickness, bool varying, const Body& body) {
-  static const Rule<1> rules[2] = {line_rule(nodes == 2 ? 1 : 2), line_rule(nodes == 2 ? 3 : 4)};
-  for (const auto& q : rules[varying]) {
+  for (const auto& q : edge_rule(nodes, varying)) {
     SidePoint<nodes> point{.N = Simplex<1, nodes>::values(q.xi), .weight = q.weight};
     const auto gradients = Simplex<1, nodes>::gradients(q.xi);
     for (int a = 0; a < nodes; ++a) {

@@ -11,18 +11,49 @@ namespace {
 constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 constexpr int across = 8;  // 3 i + k of F_33
 
+/// A step that changes the thickness by half at most.
+double bounded(double step, double thickness) {
+  const double limit = 0.5 * std::max(std::abs(thickness), 0.1);
+  return std::clamp(step, -limit, limit);
+}
+
+/// One law evaluation per step. A lane's step is halved while |P_33| does not fall, and dropped at round-off of F.
+void complete_with(const Law& law, Gradients& H) {
+  Response response;
+  Lanes good = H(2, 2), step{}, best = lanes_of(std::numeric_limits<double>::infinity());
+  for (int iteration = 0; iteration < 80; ++iteration) {
+    law.evaluate(Want::tangent, {&H, 1}, {&response, 1});
+    bool moving = false;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double P = response.P(2, 2)[lane], A = response.tangent[packed(across, across)][lane];
+      if (std::abs(P) < best[lane]) {
+        best[lane] = std::abs(P);
+        good[lane] = H(2, 2)[lane];
+        step[lane] = bounded(-P / (A > 0 ? A : 2 * law.shear_modulus()), 1 + good[lane]);
+      } else {
+        step[lane] *= 0.5;
+      }
+      if (std::abs(step[lane]) < 4e-16 && !law.small_strain()) step[lane] = 0;
+      H(2, 2)[lane] = good[lane] + step[lane];
+      moving = moving || step[lane] != 0;
+    }
+    if (!moving || law.small_strain()) return;  // one step is exact where P is linear
+  }
+  H(2, 2) = good;
+}
+
 class PlaneStress final : public Law {
  public:
   explicit PlaneStress(std::shared_ptr<const Law> law) : law_(std::move(law)) {}
 
   void complete(std::span<Gradients> gradients) const override {
-    for (Gradients& H : gradients) complete(H);
+    for (Gradients& H : gradients) complete_with(*law_, H);
   }
 
   void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       Gradients H = gradients[i];
-      complete(H);
+      complete_with(*law_, H);
       law_->evaluate(want, {&H, 1}, responses.subspan(i, 1));
       if (want != Want::stress) condense(responses[i]);
     }
@@ -31,7 +62,7 @@ class PlaneStress final : public Law {
   void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       Gradients H = gradients[i];
-      complete(H);
+      complete_with(*law_, H);
       law_->measure({&H, 1}, measures.subspan(i, 1));
     }
   }
@@ -46,37 +77,6 @@ class PlaneStress final : public Law {
   bool small_strain() const override { return law_->small_strain(); }
 
  private:
-  /// One law evaluation per step. A lane's step is halved while |P_33| does not fall, and dropped at round-off of F.
-  void complete(Gradients& H) const {
-    Response response;
-    Lanes good = H(2, 2), step{}, best = lanes_of(std::numeric_limits<double>::infinity());
-    for (int iteration = 0; iteration < 80; ++iteration) {
-      law_->evaluate(Want::tangent, {&H, 1}, {&response, 1});
-      bool moving = false;
-      for (int lane = 0; lane < lanes; ++lane) {
-        const double P = response.P(2, 2)[lane], A = response.tangent[packed(across, across)][lane];
-        if (std::abs(P) < best[lane]) {
-          best[lane] = std::abs(P);
-          good[lane] = H(2, 2)[lane];
-          step[lane] = bounded(-P / (A > 0 ? A : 2 * law_->shear_modulus()), 1 + good[lane]);
-        } else {
-          step[lane] *= 0.5;
-        }
-        if (std::abs(step[lane]) < 4e-16 && !law_->small_strain()) step[lane] = 0;
-        H(2, 2)[lane] = good[lane] + step[lane];
-        moving = moving || step[lane] != 0;
-      }
-      if (!moving || law_->small_strain()) return;  // one step is exact where P is linear
-    }
-    H(2, 2) = good;
-  }
-
-  /// A step that changes the thickness by half at most.
-  static double bounded(double step, double thickness) {
-    const double limit = 0.5 * std::max(std::abs(thickness), 0.1);
-    return std::clamp(step, -limit, limit);
-  }
-
   static void condense(Response& response) {
     Lanes column[9];
     for (int I = 0; I < 9; ++I) column[I] = response.tangent[packed(I, across)];
@@ -91,6 +91,20 @@ class PlaneStress final : public Law {
 };
 
 }  // namespace
+
+Thinning thinning(const Law& law, const Gradients& gradient) {
+  Gradients H = gradient;
+  complete_with(law, H);
+  Response response;
+  law.evaluate(Want::tangent, {&H, 1}, {&response, 1});
+  Thinning found{H(2, 2) + 1.0, {}};
+  for (int I = 0; I < 8; ++I)
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double pivot = response.tangent[packed(across, across)][lane];
+      found.slope[I][lane] = pivot > 0 ? -response.tangent[packed(across, I)][lane] / pivot : 0;
+    }
+  return found;
+}
 
 std::shared_ptr<const Law> make_plane_stress(std::shared_ptr<const Law> law) {
   return std::make_shared<const PlaneStress>(std::move(law));

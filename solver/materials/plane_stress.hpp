@@ -14,4 +14,14 @@ namespace msml::fe {
 /// it.
 std::shared_ptr<const Law> make_plane_stress(std::shared_ptr<const Law> law);
 
+/// F_33 of a law under plane stress, and its derivative by F_ik of the plane at 3 i + k.
+struct Thinning {
+  Lanes stretch;
+  Lanes slope[9];
+};
+
+/// Of a law that does not know of plane stress itself, at gradients in the plane. dF_33/dF = -A_33 / A_3333 from P_33 =
+/// 0.
+Thinning thinning(const Law& law, const Gradients& gradient);
+
 }  // namespace msml::fe

@@ -162,7 +162,7 @@ TEST(Materials, TakeEntriesOfListsFromCellFields) {
     EXPECT_GT((stress(*law, 1.3, 1.2, 0.8, 1) - stress(*law, 1.3, 1.2, 0.8, 0)).norm(), 1e-2) << tag;
   };
   // E = 1700 and both = (107, 193) in element 7.
-  const Attributes ogden{{"mu", Formulas{300.0, 50.0}}, {"alpha", Formulas{2.0, -2.0}}, {"bulkModulus", 500.0}};
+  const Attributes ogden{{"mu", Formulas{300.0, 50.0}}, {"alpha", Formulas{2.0, 3.0}}, {"bulkModulus", 500.0}};
   same("ogdenMaterial", with(ogden, "fields", std::string("mu[1]=E")), with(ogden, "mu", Formulas{1700.0, 50.0}));
   same("ogdenMaterial", with(ogden, "fields", std::string("mu=both")), with(ogden, "mu", Formulas{107.0, 193.0}));
   const Attributes reduced{{"c", Formulas{1.0, 2.0}}, {"bulkModulus", 500.0}};

@@ -2,6 +2,7 @@
 // Laws under plane stress: nothing pulls across the plane.
 #include <gtest/gtest.h>
 
+#include "solver/equations.hpp"
 #include "solver/materials/plane_stress.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
@@ -105,6 +106,86 @@ TEST(PlaneStress, OfTheNeoHookeanLawIsUniaxialTension) {
     EXPECT_NEAR(corner[1], 0.88017459 - 1, 1e-8);
     EXPECT_NEAR(element_results(model, outcome.state).J[0], 1.5 * 0.88017459 * 0.88017459, 1e-7);
   }
+}
+
+/// A square held on x = 0 and y = 0, pressed on its other edges.
+Model pressed_square(CellKind kind, std::shared_ptr<const Law> law, double pressure) {
+  Model model = make_model(rectangle_mesh(2, 2, 1, 1, kind), {});
+  model.plane = Plane::stress;
+  model.thickness = 0.3;
+  model.regions[0].law = std::move(law);
+  FaceLoad load{.name = "p", .pressures = {pressure}, .follower = true};
+  load.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[0] > 1 - 1e-9; });
+  for (const Face& face : faces_where(*model.mesh, [](const Vec3& x) { return x[1] > 1 - 1e-9; }))
+    load.faces.push_back(face);
+  const auto side = [&](int d) {
+    return points_where(*model.mesh, [=](const Vec3& x) { return std::abs(x[d]) < 1e-9; });
+  };
+  model.steps[0].prescribed = {fix(side(0), true, false, false), fix(side(1), false, true, false)};
+  model.steps[0].face_loads = {load};
+  return model;
+}
+
+// A pressure is force per deformed area, of the deformed thickness too: the Cauchy stress is -p in the plane. The
+// closed form of the incompressible sheet, sigma = mu (l^2 - l^-4), is met as the bulk modulus grows.
+TEST(PlaneStress, AFollowerPressureActsOnTheDeformedThickness) {
+  for (const CellKind kind : {CellKind::tri3, CellKind::tri6})
+    for (const double pressure : {-300.0, 150.0}) {
+      Model model = pressed_square(
+          kind, law_of("neoHookeanMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", 0.3}}), pressure);
+      model.settings.load_steps = 4;
+      const Outcome outcome = solve(model, {});
+      ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+      const auto stress = element_results(model, outcome.state).cauchy;
+      for (std::size_t k = 0; k < stress.size(); k += 6) {
+        EXPECT_NEAR(stress[k], -pressure, 1e-5);  // Newton's tolerance, 1e-8 of the loads
+        EXPECT_NEAR(stress[k + 1], -pressure, 1e-5);
+      }
+    }
+  const double mu = 1, l = 1.3;
+  Model sheet = pressed_square(
+      CellKind::tri6,
+      law_of("neoHookeanMaterial",
+             {{"youngModulus", 3 * mu * (1 - 1e-7)}, {"poissonRatio", 0.5 - 1e-7}, {"form", std::string("isochoric")}}),
+      -mu * (l * l - std::pow(l, -4)));
+  sheet.settings.load_steps = 4;
+  const Outcome outcome = solve(sheet, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_NEAR(outcome.state.displacement(nearest_point(*sheet.mesh, {1, 1, 0}), 0), l - 1, 1e-5);  // 1e-7 / (1 - 2 nu)
+}
+
+TEST(PlaneStress, AFollowerPressureHasItsTangent) {
+  const auto soft_above = [](std::span<const int>, std::span<const Vec3> places) {
+    std::vector<std::shared_ptr<const Law>> laws;
+    for (const Vec3& X : places)
+      laws.push_back(law_of("neoHookeanMaterial", {{"youngModulus", 1000 - 500 * X[1]}, {"poissonRatio", 0.3}}));
+    laws.resize(lanes, laws.back());
+    return laws.front()->merged(laws);
+  };
+  for (const CellKind kind : {CellKind::tri3, CellKind::tri6})
+    for (const bool varying : {false, true}) {
+      Model model =
+          pressed_square(kind, law_of("neoHookeanMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", 0.3}}), 2);
+      if (varying) model.regions[0].point_law = soft_above;
+      if (varying) model.steps[0].face_loads[0].pressure_function = [](const Vec3& X, double) { return 1 + X[1]; };
+      const Equations equations(model);
+      Vector u = Vector::Zero(equations.size());
+      for (Eigen::Index k = 0; k < u.size(); ++k)
+        if (k % 3 < 2) u[k] = 0.05 * std::sin(3.0 * static_cast<double>(k));
+      BlockMatrix K(equations.elements().pattern());
+      Vector force = Vector::Zero(u.size());
+      add_followers({&equations.loads(0), 1, 0}, equations.positions(), u, force, &K);
+      const double h = 1e-6;
+      for (Eigen::Index k = 0; k < u.size(); ++k) {
+        if (k % 3 == 2) continue;  // held at zero
+        Vector up = u, down = u, plus = Vector::Zero(u.size()), minus = plus, column;
+        up[k] += h, down[k] -= h;
+        add_followers({&equations.loads(0), 1, 0}, equations.positions(), up, plus, nullptr);
+        add_followers({&equations.loads(0), 1, 0}, equations.positions(), down, minus, nullptr);
+        multiply(K, Vector::Unit(u.size(), k), column);
+        EXPECT_LT((column + (plus - minus) / (2 * h)).cwiseAbs().maxCoeff(), 1e-8);
+      }
+    }
 }
 
 }  // namespace

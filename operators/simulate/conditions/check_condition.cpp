@@ -47,19 +47,6 @@ void check_vectors(const Record& record, CellKind kind, const std::string& attri
   }
 }
 
-void check_pressure(const Record& condition, const Surroundings& around) {
-  const Value* pressure = value_of(condition, "pressure");
-  const Value* follower = value_of(condition, "follower");
-  if (!around.thinning || pressure == nullptr || follower == nullptr) return;
-  const auto* numbers = std::get_if<Formulas>(pressure);
-  const auto* wanted = std::get_if<bool>(follower);
-  if ((numbers != nullptr && numbers->size() == 3) || (wanted != nullptr && !*wanted)) return;
-  refuse(condition,
-         "a pressure that follows acts on the deformed edge, but with plane=\"stress\" and a law of finite strains the "
-         "thickness of that edge changes, which the pressure does not see; take follower=\"false\" (pressure per "
-         "reference area), plane=\"strain\", or tetrahedra");
-}
-
 void check_spring(const Record& condition) {
   if (condition.tag().starts_with("spring")) VaryingRecord::check(condition);  // their numbers do not know the time
   const Value *first = value_of(condition, "first"), *second = value_of(condition, "second");
@@ -94,16 +81,8 @@ void check_condition(const Record& condition, const Surroundings& around) {
   for (std::size_t s = 0; s < slots.size() && flat; ++s)
     if (const auto* list = std::get_if<Formulas>(&condition.values[s]))
       check_vectors(condition, around.kind, slots[s].name, *list);
-  check_pressure(condition, around);
   check_spring(condition);
   if (around.settings != nullptr) check_motion(condition, *around.settings);
-}
-
-bool changes_thickness(const fe::Model& model) {
-  return model.plane == fe::Plane::stress &&
-         std::any_of(model.regions.begin(), model.regions.end(), [](const fe::Region& region) {
-           return region.law != nullptr && region.law->name() != "linearElasticMaterial";
-         });
 }
 
 }  // namespace msml::simulation

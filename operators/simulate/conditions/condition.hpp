@@ -58,16 +58,11 @@ std::vector<ConditionFactory> conditions();
 struct Surroundings {
   CellKind kind = CellKind::vertex;  ///< of the elements; vertex: particles
   std::optional<bool> scalar = {};   ///< the unknown is no displacement
-  bool thinning = false;             ///< see changes_thickness()
   const fe::Settings* settings = nullptr;
 };
 /// Throws Error at the condition's place where it has no meaning there: it is of displacements, but the unknown is
-/// scalar, or the other way round; it points out of the plane or the line of the body; its pressure would have to know
-/// how the thickness changes; it ties a node to itself; it gives a velocity to what has no inertia.
+/// scalar, or the other way round; it points out of the plane or the line of the body; it ties a node to itself; it gives a velocity to what has no inertia.
 void check_condition(const Record& condition, const Surroundings& around);
-
-/// True if the body is in plane stress and a law is of finite strains, so that its thickness changes.
-bool changes_thickness(const fe::Model& model);
 
 /// Attributes that every condition has.
 struct CommonKeys {
