@@ -61,7 +61,8 @@ struct Surroundings {
   const fe::Settings* settings = nullptr;
 };
 /// Throws Error at the condition's place where it has no meaning there: it is of displacements, but the unknown is
-/// scalar, or the other way round; it points out of the plane or the line of the body; it ties a node to itself; it gives a velocity to what has no inertia.
+/// scalar, or the other way round; it points out of the plane or the line of the body; it ties a node to itself; it
+/// gives a velocity to what has no inertia.
 void check_condition(const Record& condition, const Surroundings& around);
 
 /// Attributes that every condition has.
