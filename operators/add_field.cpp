@@ -6,6 +6,7 @@
 
 #include "msml/core/formula.hpp"
 #include "msml/core/operator.hpp"
+#include "operators/early_checks.hpp"
 
 namespace msml::operators {
 namespace {
@@ -49,9 +50,11 @@ Operator add_field() {
       "at", {.fallback = "cells", .choices = {"cells", "points"}, .doc = "centres of the cells, or points"});
   const auto result = op.output<Mesh>("result", "the mesh with the field");
   op.target("meshFilename", result, "file to write the mesh to");
-  op.run([=](Context& c) {
+  const auto check = [=](const Record& r) {
+    if (r.has(values)) refuse_time(functions(r, values));
+  };
+  run_checked(op, check, [=](Context& c) {
     const std::vector<Function> formulas = functions(c.args(), values);
-    refuse_time(formulas);
     Mesh mesh = c.get(given);
     const bool at_cells = c.get(at) == "cells";
     std::vector<Field>& fields = at_cells ? mesh.cell_fields : mesh.point_fields;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "msml/core/operator.hpp"
+#include "operators/early_checks.hpp"
 #include "operators/mesh_generators.hpp"
 
 namespace msml::operators {
@@ -33,10 +34,8 @@ Operator generate_sphere() {
       op.parameter<bool>("quadratic", {.fallback = false, .doc = "tet10 with mid nodes on the curved surface"});
   const auto mesh = op.output<Mesh>("mesh", "tet4 (or tet10), positive volumes, region 0");
   op.target("meshFilename", mesh, "file to write the mesh to");
-  op.run([=](Context& c) {
+  run_checked(op, radii_in_order(inner, radius), [=](Context& c) {
     const auto& o = c.get(center);
-    if (c.get(inner) >= c.get(radius))
-      throw Error(fmt::format("innerRadius = {} is not below radius = {}", c.get(inner), c.get(radius)));
     const Sphere sphere{.centre = Vec3(o[0], o[1], o[2]),
                         .radius = c.get(radius),
                         .inner = c.get(inner),

@@ -5,23 +5,10 @@
 #include <algorithm>
 
 #include "msml/core/operator.hpp"
+#include "operators/early_checks.hpp"
 
 namespace msml::operators {
 namespace {
-
-struct Bounds {
-  Vec3 low, high;
-  bool holds(const Vec3& p) const { return (p.array() >= low.array()).all() && (p.array() <= high.array()).all(); }
-};
-
-Bounds box_of(const std::vector<double>& box) {
-  constexpr const char* axes = "xyz";
-  for (std::size_t d = 0; d < 3; ++d)
-    if (box[d] > box[d + 3])
-      throw Error(fmt::format("box: {0}min = {1:g} is above {0}max = {2:g}; the order is xmin ymin zmin xmax ymax zmax",
-                              axes[d], box[d], box[d + 3]));
-  return {Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5])};
-}
 
 /// Cells of one dimension whose nodes all lie in the box.
 std::vector<int> cells_inside(const Mesh& mesh, int wanted, const Bounds& box) {
@@ -90,8 +77,11 @@ Operator indices_from_box() {
                         "mesh) with all nodes inside, by their cell ids in the mesh"});
   const auto indices = op.output<IndexSet>("indices", "0-based, ascending; nodes, elements or faces of the mesh");
   op.note("A box that holds nothing gives an empty set and a warning.");
-  op.run([=](Context& c) {
-    IndexSet set = select_inside(c.get(mesh), c.get(select), box_of(c.get(box)));
+  const auto check = [=](const Record& r) {
+    if (r.has(box)) bounds_of(r[box]);
+  };
+  run_checked(op, check, [=](Context& c) {
+    IndexSet set = select_inside(c.get(mesh), c.get(select), bounds_of(c.get(box)));
     warn_if_empty(c.get(mesh), c.get(select), set, c.reporter());
     set.mesh = c.share(mesh);
     c.set(indices, std::move(set));

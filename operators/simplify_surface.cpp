@@ -4,21 +4,16 @@
 
 #include "msml/core/operator.hpp"
 #include "operators/cgal_surface.hpp"
+#include "operators/early_checks.hpp"
 #include "operators/mesh_soup.hpp"
 
 namespace msml::operators {
 namespace {
 
-std::optional<std::pair<Vec3, Vec3>> box_of(const std::vector<double>& box) {
+std::optional<std::pair<Vec3, Vec3>> kept(const std::vector<double>& box) {
   if (box.size() == 1 && box[0] == -1) return std::nullopt;
-  if (box.size() != 6)
-    throw Error(fmt::format("box has {} numbers; it takes 6: xmin ymin zmin xmax ymax zmax", box.size()));
-  constexpr const char* axes = "xyz";
-  for (std::size_t d = 0; d < 3; ++d)
-    if (box[d] > box[d + 3])
-      throw Error(fmt::format("box: {0}min = {1:g} is above {0}max = {2:g}; the order is xmin ymin zmin xmax ymax zmax",
-                              axes[d], box[d], box[d + 3]));
-  return std::pair(Vec3(box[0], box[1], box[2]), Vec3(box[3], box[4], box[5]));
+  const Bounds bounds = bounds_of(box);
+  return std::pair(bounds.low, bounds.high);
 }
 
 long edge_count(const Surface& surface, long border) { return (3L * surface.triangle_count() + border) / 2; }
@@ -49,7 +44,7 @@ Surface simplify(const Surface& given, const CollapseTarget& target, const std::
   if (surface.triangles.empty()) throw Error("the surface has no triangles");
   if (!was.manifold()) throw Error("edges of this surface cannot be collapsed: " + was.str());
   check_target(target, surface, edge_count(surface, was.border_edges));
-  Surface result = collapse_edges(surface, target, box_of(box));
+  Surface result = collapse_edges(surface, target, kept(box));
   check_result(surface, was, result);
   const long edges = edge_count(result, faults(result).border_edges);
   const bool reached = target.edges ? edges <= *target.edges : result.point_count() <= *target.vertices;
@@ -80,8 +75,11 @@ Operator simplify_surface() {
       "outputMeshFile", "closed and free of self-intersections where the input is; fields are dropped");
   op.target("outputMeshFile", result, "file to write the surface to");
   op.note("vertices is an addition to MSML, where stopnr alone tells when to stop.");
-  op.run([=](Context& c) {
-    if (c.has(stopnr) == c.has(vertices)) throw Error("give either stopnr (edges) or vertices, and not both");
+  const auto check = [=](const Record& r) {
+    if (r.is_given(stopnr) == r.is_given(vertices)) throw Error("give either stopnr (edges) or vertices, and not both");
+    if (r.has(box)) kept(r[box]);
+  };
+  run_checked(op, check, [=](Context& c) {
     CollapseTarget target;
     if (c.has(stopnr))
       target.edges = static_cast<long>(c.get(stopnr));

@@ -8,6 +8,7 @@
 #include "msml/core/formula.hpp"
 #include "msml/core/operator.hpp"
 #include "operators/compare_meshes.hpp"
+#include "operators/early_checks.hpp"
 #include "operators/vtk_sample.hpp"
 #include "solver/elements/shapes.hpp"
 
@@ -229,10 +230,14 @@ Operator simulate_field_error() {
   const auto relative =
       op.parameter<bool>("relative", {.fallback = true, .doc = "divide by the same norm of the exact field"});
   const auto error = op.output<double>("error", "0 = equal");
-  op.run([=](Context& c) {
-    const Record& args = c.args();
-    if (args.has(reference) == args.has(expected))
+  const auto check = [=](const Record& r) {
+    if (r.is_given(reference) == r.is_given(expected))
       throw Error("give either expected or referenceMesh, what the field is to be compared with");
+    if (r.has(expected) && functions(r, expected).empty())
+      throw Error("expected is empty; one formula for each component of the field is needed");
+  };
+  run_checked(op, check, [=](Context& c) {
+    const Record& args = c.args();
     const auto measured = [&] {
       if (args.has(reference))
         return against_mesh(c.get(mesh), c.get(reference), c.get(field), c.get(norm), c.get(relative));

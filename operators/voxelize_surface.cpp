@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "msml/core/operator.hpp"
+#include "operators/early_checks.hpp"
 #include "operators/vtk_voxelize.hpp"
 
 namespace msml::operators {
@@ -61,13 +62,16 @@ Operator voxelize_surface() {
                                                         "effect with a reference grid"});
   const auto image = op.output<Image>("image", "uint8, 0 and 255");
   op.target("targetImageFilename", image, "file to write the image to");
-  op.run([=](Context& c) {
-    const int given = (c.get(resolution) > 0) + (c.get(voxel_size) > 0) + c.has(reference);
+  const auto check = [=](const Record& r) {
+    if (!r.has(resolution) || !r.has(voxel_size)) return;
+    const int given = (r[resolution] > 0) + (r[voxel_size] > 0) + r.is_given(reference);
     if (given != 1)
       throw Error(
           fmt::format("{} of resolution, isotropicVoxelSize and referenceCoordinateGrid are given; exactly one "
                       "is needed",
                       given));
+  };
+  run_checked(op, check, [=](Context& c) {
     const Surface whole = closed_surface(c.get(surface), !c.get(no_filling), c.reporter());
     if (c.has(reference)) return c.set(image, filled(whole, c.get(reference)));
     const double voxel = c.get(voxel_size) > 0
