@@ -60,6 +60,22 @@ std::string residual_text(const IncrementResult& result) {
   return text + fmt::format(" (forces are of the size {:.2e})", result.scale);
 }
 
+/// Which of Newton's criteria is not met; "" where the iteration ended for another reason.
+std::string criteria_text(const Run& run, const IncrementResult& result) {
+  const bool limit = result.stop == Stop::newton_limit || result.stop == Stop::step_too_large;
+  if (!limit || result.residuals.empty()) return "";
+  const double tolerance = run.model.settings.tolerance;
+  if (result.missing_way < 0)
+    return fmt::format(": the criterion of the residual is not met, tolerance = {:g} of that size", tolerance);
+  std::string failed;
+  if (!(result.missing_way <= tolerance))
+    failed += fmt::format(" increment ({:.2g} of the displacement is missing)", result.missing_way);
+  if (!(result.missing_energy <= tolerance))
+    failed +=
+        fmt::format("{} energy ({:.2g} of its norm is missing)", failed.empty() ? "" : " and", result.missing_energy);
+  return fmt::format(": within tolerance = {:g} for the residual, but not for{}", tolerance, failed);
+}
+
 std::string element_text(const Run& run, const IncrementResult& result) {
   if (result.worst_element < 0) return "";
   const Mesh& mesh = *run.model.mesh;
@@ -87,9 +103,9 @@ void explain(Run& run, const IncrementResult& result, double share, const std::s
   run.residuals = result.residuals;
   run.outcome.stop = result.stop;
   run.outcome.diagnosis =
-      fmt::format("step {} '{}' stopped {}: {}{}{}; residuals {}{}{}; {}", run.now.step + 1, step.name, when,
+      fmt::format("step {} '{}' stopped {}: {}{}{}; residuals {}{}{}{}; {}", run.now.step + 1, step.name, when,
                   name(result.stop), evidence.empty() ? "" : ": ", evidence, residual_text(result),
-                  element_text(run, result), node_text(run, result), advice(run, result));
+                  criteria_text(run, result), element_text(run, result), node_text(run, result), advice(run, result));
 }
 
 }  // namespace msml::fe

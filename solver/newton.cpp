@@ -212,6 +212,8 @@ IncrementResult Newton::begin(const Increment& increment, const Vector& jump) {
     prepare(u, increment.loads);
   indefinite_ = definite_taken_ = insist_definite_ = false;
   round_off_ = last_step_ = 0;
+  last_ = {}, exact_ = false;
+  start_energy_ = forces_.found.energy;
   // Fixed unknowns move in the first iteration: their motion counts fully, their strain through the tangent.
   equations_.evaluate_motion(increment.motion.velocity_at(u + jump), increment.motion.acceleration_at(u + jump),
                              increment.damping_matrix, forces_);
@@ -228,9 +230,10 @@ IncrementResult Newton::run(const Increment& increment) {
   IncrementResult result = begin(increment, jump);
   Vector& u = result.u;
   if (!std::isfinite(result.residuals.back())) return result.stop = not_finite(), result;
-  if (!moved && limit > 1 && accepted(increment, result)) return result.stop = verdict(increment, result), result;
-  linear_->expect(increment.expected);
   Vector residual = free_residual(increment);
+  if (!moved && limit > 1 && accepted(increment, residual, result))
+    return result.stop = verdict(increment, result), result;
+  linear_->expect(increment.expected);
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);
     ++iterations_;
@@ -254,9 +257,11 @@ IncrementResult Newton::run(const Increment& increment) {
       evaluate(increment, u, want_, false);
     }
     last_step_ = definite_taken_ ? std::numeric_limits<double>::infinity() : step.cwiseAbs().maxCoeff();
+    last_ = size_of(moving ? Vector(u - increment.start) : Vector(share * step), residual);
+    exact_ = share == 1 && !definite_taken_ && !moving;
     residual = free_residual(increment);
     note_residual(increment, residual, result);
-    if (accepted(increment, result)) return result.stop = verdict(increment, result), result;
+    if (accepted(increment, residual, result)) return result.stop = verdict(increment, result), result;
     if (!residual.allFinite()) return result.stop = not_finite(), result;
     if (exploded(result)) return result.stop = Stop::diverged, result;
   }
@@ -266,6 +271,7 @@ IncrementResult Newton::run(const Increment& increment) {
 
 Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads,
                                     const Supports& supports) {
+  factor_known_ = false;
   prepare(u, loads);
   BlockMatrix C(tangent_.pattern, 0), &mass = effective_;  // which no increment uses yet
   equations_.evaluate_motion(v, Vector::Zero(u.size()), damping(u, loads, C) ? &C : nullptr, forces_);

@@ -32,10 +32,25 @@ struct IncrementResult {
   int worst_node = -1;  ///< mesh point with the largest residual
   int definite = 0;     ///< iterations that took the semidefinite tangent
   int stunted = 0;      ///< iterations that went less than an eighth of Newton's step
-  double walked = 0;    ///< where pieces of the increment were tried: the share that was reached
+  /// Shares of the displacement and (as a root: of its norm) of the energy that are estimated to be missing at the end;
+  /// -1: not looked at, as the residual was not small enough or round-off all that was left.
+  double missing_way = -1, missing_energy = -1;
+  double walked = 0;  ///< where pieces of the increment were tried: the share that was reached
 };
 
 /// Work space and statistics of all increments of a run.
+///
+/// An increment has converged where, with t = Settings::tolerance,
+/// - residual: |r| <= t times the largest of the norms of external, internal, inertia and reaction forces,
+/// - increment: |d| <= t times the largest displacement at the start or the end (max norms of displacements),
+/// - energy: |r.d| <= t^2 times the largest of the energies stored at the start and the end and the works of external,
+///   internal, inertia and damping forces over the way gone: its root is the error's energy norm.
+/// d is what a further step would add. It is not taken but foreseen by the matrix that was factorised last (the
+/// simplified Newton correction of Deuflhard 2011, doi 10.1007/978-3-642-23899-4, section 2.1, with the sum of the
+/// series that its contraction promises); after an exact step of less than sqrt(t)/10 of both scales there is no need.
+/// So a residual that is small beside the reactions of stiff parts does not hide the way of soft ones. Linear problems
+/// end after one solution, whose accuracy is Settings::linear_tolerance. Each criterion has a floor where round-off in
+/// displacements and strains is all that is left.
 class Newton {
  public:
   Newton(const Model& model, const Equations& equations);
@@ -54,7 +69,7 @@ class Newton {
   /// Forces and tangent at u, which the next increment starts from unless forget() is called.
   void prepare(const Vector& u, const ScaledLoads& loads);
   /// Rigid motions are free in the increments to come: the matrix is shifted a little, and the solution refined.
-  void free_rigid_motions(bool free) { rigid_free_ = free; }
+  void free_rigid_motions(bool free) { rigid_free_ = free, factor_known_ = false; }
   /// Forces at u alone.
   void look(const Vector& u, const ScaledLoads& loads);
   /// Forces of the start of a step that is to be tried again; the next increment starts from forces of its own.
@@ -78,6 +93,8 @@ class Newton {
   int settle_pressures(Vector& u);
   /// What is missing in the balance of an increment with the forces that were last evaluated.
   Vector residual(const Increment& increment) const;
+  /// What round-off changes in displacements at u and in strains times the size of elements.
+  double finest(const Vector& u) const;
   const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
   const BlockMatrix& tangent() const { return tangent_; }
   const BlockMatrix* followers() const { return followers_.get(); }  ///< null without follower pressure
@@ -93,7 +110,7 @@ class Newton {
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025).
   double linear_tolerance(const Vector& right, const Mask& fixed) const;
-  LinearStatus solve(const Increment& increment, const Vector& right, Vector& step);
+  LinearStatus solve(const Increment& increment, const Vector& right, double tolerance, Vector& step);
   /// By a factorisation of the tangent with the followers' part, symmetric or not.
   LinearStatus factor_whole(const Increment& increment);
   LinearStatus direction(const Increment& increment, const Vector& u, const Vector& jump, const Vector& residual,
@@ -107,7 +124,20 @@ class Newton {
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   double residual_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   bool indefinite(LinearStatus status) const;
-  bool accepted(const Increment& increment, const IncrementResult& result) const;
+  bool accepted(const Increment& increment, const Vector& residual, IncrementResult& result);
+  /// A length and an energy: of a step, of what is missing, or what these are measured by.
+  struct Size {
+    double way = 0, energy = 0;
+  };
+  Size scale(const Increment& increment, const Vector& u) const;
+  /// Of a step that a residual asks for; pressures are no way.
+  Size size_of(const Vector& step, const Vector& residual) const;
+  /// True if round-off in displacements and strains explains what is left at each free unknown.
+  bool at_round_off(const Vector& residual, const Mask& fixed, const Vector& u) const;
+  /// The criteria of increment and energy, where the residual's is met.
+  bool complete(const Increment& increment, const Vector& residual, IncrementResult& result);
+  /// What a further step would add, by the matrix that was factorised last; false where there is none.
+  bool correction(const Increment& increment, const Vector& residual, Vector& step);
   bool exploded(const IncrementResult& result) const;
   Stop not_finite() const;  ///< why the state evaluated last has no finite forces
   double round_off(const Vector& u) const;
@@ -138,10 +168,19 @@ class Newton {
   bool whole_taken_ = false;     ///< the last step came from factor_whole()
   bool indefinite_ = false;      ///< the last exact tangent was not that of a stable equilibrium
   double round_off_ = 0;         ///< norm of the residual that round-off in the strains alone can leave
+  Size last_;                    ///< the last step; 0 before any
+  bool exact_ = false;           ///< that was Newton's, to its full length
+  double start_energy_ = 0;      ///< stored at the start of the increment
+  bool factor_known_ = false;    ///< a matrix was factorised that may serve at the start of the next increment
+  double factor_velocity_ = 0, factor_acceleration_ = 0;  ///< Kinematics factors of that matrix
   int iterations_ = 0, solves_ = 0;
   int definite_ = 0, walked_ = 0;  ///< iterations with a semidefinite tangent, increments reached in pieces
   double seconds_assembly_ = 0, seconds_linear_ = 0;
 };
+
+/// True if displacements off by `fine` explain what is left at each free unknown, beside its own stiffness: what is
+/// round-off to stiff parts is a load to soft ones.
+bool is_round_off(const Vector& residual, const BlockMatrix& K, const Mask& fixed, double fine);
 
 /// Norm over the free unknowns.
 double free_norm(const Vector& v, const Mask& fixed);

@@ -80,8 +80,7 @@ double Newton::linear_tolerance(const Vector& right, const Mask& fixed) const {
   return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
 }
 
-LinearStatus Newton::solve(const Increment& increment, const Vector& right, Vector& step) {
-  const double tolerance = linear_tolerance(right, increment.fixed);
+LinearStatus Newton::solve(const Increment& increment, const Vector& right, double tolerance, Vector& step) {
   if (rigid_free_ && !followers_ && !(increment.slides && !increment.slides->empty()))
     return solve_singular(tangent_, *linear_, increment.fixed, right, tolerance, step);
   if (!followers_) return linear_->solve(right, tolerance, step);
@@ -126,13 +125,33 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   }
   if (increment.slides) increment.slides->project(right);
   ++solves_;
-  if (whole_taken_) return unsymmetric_->solve(right, linear_tolerance(right, increment.fixed), step);
-  return solve(increment, right, step);
+  const double tolerance = linear_tolerance(right, increment.fixed);
+  status = whole_taken_ ? unsymmetric_->solve(right, tolerance, step) : solve(increment, right, tolerance, step);
+  factor_known_ = status == LinearStatus::done;
+  factor_velocity_ = increment.motion.velocity_factor;
+  factor_acceleration_ = increment.motion.acceleration_factor;
+  return status;
+}
+
+bool Newton::correction(const Increment& increment, const Vector& residual, Vector& step) {
+  const Kinematics& motion = increment.motion;
+  if (!factor_known_ || motion.velocity_factor != factor_velocity_ ||
+      motion.acceleration_factor != factor_acceleration_)
+    return false;
+  const Stopwatch watch(seconds_linear_);
+  Vector right = residual / motion.force_share;
+  if (increment.slides) increment.slides->project(right);
+  ++solves_;
+  constexpr double rough = 0.1;  // one figure is enough to know how much is missing
+  const LinearStatus status =
+      whole_taken_ ? unsymmetric_->solve(right, rough, step) : solve(increment, right, rough, step);
+  return status == LinearStatus::done && step.allFinite();
 }
 
 int Newton::settle_pressures(Vector& u) {
   const Numbering& numbering = equations_.numbering();
   if (!numbering.mixed()) return 0;
+  factor_known_ = false;
   prepare(u, {});
   if (!forces_.internal.allFinite()) return 0;
   BlockMatrix& compliance = effective_;  // which no increment uses yet

@@ -16,8 +16,8 @@ double free_norm(const Vector& v, const Mask& fixed) {
   return std::sqrt(sum);
 }
 
-double Newton::round_off(const Vector& u) const {
-  // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1: times the stiffness.
+double Newton::finest(const Vector& u) const {
+  // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1.
   const Points& points = model_.mesh->points;
   const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
   const Numbering& numbering = equations_.numbering();
@@ -25,13 +25,17 @@ double Newton::round_off(const Vector& u) const {
   for (int c = 0; c < numbering.components; ++c) volume *= extent[c];
   const bool exact = equations_.small_strain() || numbering.scalar;
   const double size = exact ? 0 : std::pow(volume, 1.0 / numbering.components);
+  return 4e-16 * (size + u.cwiseAbs().maxCoeff());
+}
+
+double Newton::round_off(const Vector& u) const {
   double sum = 0;
   for (const int p : factored_->pattern->diagonal)
     for (int i = 0; i < 3; ++i) {
       const double k = factored_->values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
       sum += k * k;
     }
-  return 4e-16 * std::sqrt(sum) * (size + u.cwiseAbs().maxCoeff());
+  return std::sqrt(sum) * finest(u);
 }
 
 void Newton::note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const {
@@ -51,20 +55,6 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
       result.worst_node = extra < 0 ? numbering.node_of[static_cast<std::size_t>(node)]
                                     : numbering.pressure_of[static_cast<std::size_t>(extra)];
     }
-}
-
-bool Newton::accepted(const Increment& increment, const IncrementResult& result) const {
-  const double norm = result.residuals.back(), tolerance = model_.settings.tolerance;
-  if (!std::isfinite(norm) || !std::isfinite(result.scale)) return false;
-  if (norm <= std::max(tolerance * result.scale, round_off_)) return true;
-  // Nor do more iterations help where round-off of the largest forces met is all that is left.
-  const std::size_t count = result.residuals.size();
-  if (count >= 3 && norm <= 1e-12 * result.largest_scale && norm > 0.5 * result.residuals[count - 2]) return true;
-  // Where all forces vanish in the end they are no scale: an exact Newton step that is tiny beside the way gone is the
-  // last one, however much of it the line search took where round-off hides the energy.
-  if (last_step_ == 0 || result.residuals.size() < 3) return false;
-  const double way = std::max(increment.start.cwiseAbs().maxCoeff(), result.u.cwiseAbs().maxCoeff());
-  return last_step_ <= 0.01 * tolerance * way && norm <= tolerance * result.largest_scale;
 }
 
 Stop Newton::state_verdict() const {

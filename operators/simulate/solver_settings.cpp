@@ -151,9 +151,12 @@ void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
   keys.newton = tag.parameter<Integer>(
       "newtonIterations",
       {.range = closed(1, 1000), .fallback = usual.newton_iterations, .doc = "at most; 1: one linear solve per step"});
-  keys.tolerance = tag.parameter(
-      "tolerance",
-      {.range = open(0, 1), .fallback = usual.tolerance, .doc = "of Newton: residual relative to the loads"});
+  keys.tolerance =
+      tag.parameter("tolerance", {.range = open(0, 1),
+                                  .fallback = usual.tolerance,
+                                  .doc = "of Newton: residual beside the forces, increment that is still missing "
+                                         "beside the displacement, root of the energy of that beside the energy stored "
+                                         "or the work done; linear problems end after one solution"});
   keys.linear_tolerance = tag.parameter(
       "linearTolerance", {.range = open(0, 1),
                           .fallback = usual.linear_tolerance,

@@ -95,6 +95,25 @@ struct Arc {
     return one * along >= two * along ? one : two;
   }
 
+  /// Newton's criteria of increment and energy (see Newton), of the correction that the last matrix and its t foresee.
+  bool complete(const Vector& way, const Vector& residual, const Vector& t, IncrementResult& result) const {
+    const double tolerance = run.model.settings.tolerance;
+    if (is_round_off(residual, matrix, path.supports.fixed, run.newton.finest(result.u))) return true;
+    Vector r;
+    run.newton.count(0, 1);
+    if (linear->solve(residual, 0.1, r) != LinearStatus::done) return false;
+    const double change = keep_length(way, t, r);
+    if (!std::isfinite(change)) return false;
+    const Vector missing = r + change * t;
+    const Forces& forces = run.newton.forces();
+    const double energy = std::max(
+        {std::abs(forces.found.energy), std::abs(dot(forces.internal, way)), std::abs(dot(forces.external, way))});
+    const Eigen::Index body = 3 * static_cast<Eigen::Index>(run.equations.numbering().body_nodes());
+    result.missing_way = missing.head(body).cwiseAbs().maxCoeff() / result.u.head(body).cwiseAbs().maxCoeff();
+    result.missing_energy = std::sqrt(std::abs(dot(residual, missing)) / energy);
+    return result.missing_way <= tolerance && result.missing_energy <= tolerance;
+  }
+
   /// One step from the present state; the result's u is the new displacement, `factor_out` its load factor.
   IncrementResult step(double& factor_out) {
     IncrementResult result;
@@ -124,7 +143,8 @@ struct Arc {
       result.worst_J = forces.found.smallest_J;
       result.stop = run.newton.state_verdict();
       if (result.stop != Stop::converged || !std::isfinite(norm)) return result;
-      if (norm <= run.model.settings.tolerance * result.scale) return factor_out = lambda, result;
+      const bool small = norm <= run.model.settings.tolerance * result.scale;
+      if (small && complete(way, residual, t, result)) return factor_out = lambda, result;
       if (!directions(result.u, residual, t, r)) return result.stop = Stop::singular, result;
       const double change = keep_length(way, t, r);
       if (!std::isfinite(change)) break;
