@@ -43,8 +43,9 @@ Mesh refined(const LabelGrid& grid, const std::vector<Seed>& seeds, const Meshin
   // Interfaces are located to a fiftieth of a voxel: far below the staircase of the image.
   const double error = std::min(1e-3, 0.04 * grid.spacing.minCoeff() / extent.norm());
   const auto label = [&grid](const refine::Kernel::Point_3& p) { return grid.at(Vec3(p.x(), p.y(), p.z())); };
-  const Domain domain(label, refine::Kernel::Iso_cuboid_3(0, 0, 0, extent.x(), extent.y(), extent.z()), error,
-                      CGAL::Null_subdomain_index(), &random);
+  const refine::WatchedDomain<Domain> domain(label,
+                                             refine::Kernel::Iso_cuboid_3(0, 0, 0, extent.x(), extent.y(), extent.z()),
+                                             error, CGAL::Null_subdomain_index(), &random);
   C3t3 c3t3;
   refine::insert_seeds(c3t3, domain, seeds);
   if (c3t3.triangulation().dimension() < 3) return {};

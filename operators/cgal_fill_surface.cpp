@@ -31,7 +31,7 @@ Mesh refined(const Surface& surface, const std::vector<Seed>& seeds, std::option
              const MeshingSettings& settings, const Watcher& watcher, const Announcer& announce) {
   CGAL::get_default_random() = CGAL::Random(0);
   CGAL::Random random(0);
-  Domain domain(polyhedron_of(surface), &random);
+  refine::WatchedDomain<Domain> domain(polyhedron_of(surface), &random);
   // At 180 degrees no edge is sharp; the patches of the surface still get their numbers.
   domain.detect_features(feature_angle.value_or(180));
   const auto criteria = refine::criteria<Tr>(settings, watcher);

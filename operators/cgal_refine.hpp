@@ -39,6 +39,59 @@ class Watched : public Base {
   std::shared_ptr<std::size_t> calls_ = std::make_shared<std::size_t>(0);
 };
 
+/// What is called now and then inside a pass that tells nothing of its progress, so that it can be ended from outside.
+struct Beat {
+  std::function<void()> tell;
+  std::size_t calls = 0;
+  void operator()() {
+    if (tell && ++calls % 512 == 0) tell();
+  }
+};
+
+/// A domain whose test for points inside, which every pass but exudation asks, keeps a beat.
+template <class Base>
+class WatchedDomain : public Base {
+ public:
+  using Base::Base;
+  auto is_in_domain_object() const {
+    return [inside = Base::is_in_domain_object(), beat = beat_](const auto& point) {
+      (*beat)();
+      return inside(point);
+    };
+  }
+  Beat& beat() const { return *beat_; }
+
+ private:
+  std::shared_ptr<Beat> beat_ = std::make_shared<Beat>();
+};
+
+/// The measure of slivers that CGAL's own exudation takes, which keeps a beat.
+template <class Tr>
+class WatchedSlivers : public CGAL::Mesh_3::Min_dihedral_angle_criterion<Tr> {
+  using Base = CGAL::Mesh_3::Min_dihedral_angle_criterion<Tr>;
+
+ public:
+  WatchedSlivers(const Tr& tr, Beat& beat)
+      : Base(CGAL::parameters::default_values_for_mesh_3::exude_sliver_bound, tr), beat_(&beat) {}
+  using Base::operator();
+  double operator()(const typename Tr::Geom_traits::Tetrahedron_3& tetrahedron) const override {
+    (*beat_)();
+    return Base::operator()(tetrahedron);
+  }
+
+ private:
+  Beat* beat_;
+};
+
+/// As CGAL::exude_mesh_3, with a beat.
+template <class C3t3>
+CGAL::Mesh_optimization_return_code exude(C3t3& c3t3, double seconds, Beat& beat) {
+  using Slivers = WatchedSlivers<typename C3t3::Triangulation>;
+  CGAL::Mesh_3::Slivers_exuder<C3t3, Slivers> exuder(c3t3, Slivers(c3t3.triangulation(), beat));
+  exuder.set_time_limit(seconds);
+  return exuder();
+}
+
 template <class Tr>
 using Cells = Watched<Tr, CGAL::Mesh_cell_criteria_3<Tr>>;
 template <class Tr>
@@ -95,28 +148,32 @@ std::size_t insert_seeds(C3t3& c3t3, const Domain& domain, const std::vector<See
 
 /// Refines from what the complex already holds, then runs the passes that the settings ask for.
 template <class C3t3, class Domain, class MeshCriteria>
-void refine_and_improve(C3t3& c3t3, const Domain& domain, const MeshCriteria& mesh_criteria, const MeshingSettings& s,
-                        const Announcer& announce) {
+void refine_and_improve(C3t3& c3t3, const WatchedDomain<Domain>& domain, const MeshCriteria& mesh_criteria,
+                        const MeshingSettings& s, const Announcer& announce) {
   namespace p = CGAL::parameters;
   constexpr int smoothing_sweeps = 100;
-  const auto limited = [&](const std::string& pass, const auto& run) {
+  const auto begin = [&](const std::string& pass) {
     announce(pass, false);
+    domain.beat().tell = [&announce, pass] { announce(pass, false); };
+  };
+  const auto limited = [&](const std::string& pass, const auto& run) {
+    begin(pass);
     if (run() == CGAL::TIME_LIMIT_REACHED) announce(pass, true);
   };
   announce("refining", false);
   CGAL::refine_mesh_3(c3t3, domain, mesh_criteria, p::no_reset_c3t3(), p::no_odt(), p::no_lloyd(), p::no_perturb(),
                       p::no_exude());
   if (s.odt) {
-    announce("odt", false);
+    begin("odt");
     CGAL::odt_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
   }
   if (s.lloyd) {
-    announce("lloyd", false);
+    begin("lloyd");
     CGAL::lloyd_optimize_mesh_3(c3t3, domain, p::max_iteration_number = smoothing_sweeps);
   }
   if (s.perturb)
     limited("perturbing", [&] { return CGAL::perturb_mesh_3(c3t3, domain, p::time_limit = pass_patience); });
-  if (s.exude) limited("exuding", [&] { return CGAL::exude_mesh_3(c3t3, p::time_limit = pass_patience); });
+  if (s.exude) limited("exuding", [&] { return exude(c3t3, pass_patience, domain.beat()); });
 }
 
 /// The tetrahedra of the complex with the points they use; regions are subdomain indices.

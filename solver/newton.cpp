@@ -31,7 +31,7 @@ Stop stop_of(LinearStatus status) {
 Newton::Newton(const Model& model, const Equations& equations)
     : model_(model),
       equations_(equations),
-      linear_(equations.numbering().mixed() ? make_indefinite(model.settings.threads)
+      linear_(equations.numbering().mixed() ? make_indefinite(model.settings.threads, model.settings.pulse)
                                             : make_linear_system(model.settings, equations.geometry())),
       tangent_(equations.elements().pattern()),
       effective_(equations.elements().pattern(), 0),
@@ -48,7 +48,7 @@ Newton::Newton(const Model& model, const Equations& equations)
 }
 
 void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent) {
-  if (model_.settings.pulse) model_.settings.pulse();
+  pulse();
   const Stopwatch watch(seconds_assembly_);
   if (with_tangent) linear_->place(u);
   equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr,
@@ -69,6 +69,7 @@ const LoadSet* springs_of(const ScaledLoads& loads) {
 }  // namespace
 
 void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
+  pulse();
   const Stopwatch watch(seconds_assembly_);
   linear_->place(u);
   equations_.evaluate(u, loads, want_, forces_, &tangent_, followers_.get());
@@ -77,6 +78,7 @@ void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
 }
 
 void Newton::look(const Vector& u, const ScaledLoads& loads) {
+  pulse();
   const Stopwatch watch(seconds_assembly_);
   equations_.evaluate(u, loads, Want::stress, forces_, nullptr);
   tangent_current_ = false;

@@ -117,6 +117,9 @@ class Newton {
                          Vector& step);
   Vector free_residual(const Increment& increment) const;
   void evaluate(const Increment& increment, const Vector& u, Want want, bool with_tangent);
+  void pulse() const {
+    if (model_.settings.pulse) model_.settings.pulse();
+  }
   LinearStatus attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step);
   IncrementResult begin(const Increment& increment, const Vector& jump);
   void take_jump(const Increment& increment, const Vector& jump, const Vector& step, Vector& u);

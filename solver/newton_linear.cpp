@@ -86,6 +86,7 @@ LinearStatus Newton::solve(const Increment& increment, const Vector& right, doub
   if (!followers_) return linear_->solve(right, tolerance, step);
   Vector extra;
   const LinearMap whole = [&](const Vector& x, Vector& y) {
+    pulse();
     multiply(effective_, x, y);
     multiply(*followers_, x, extra);
     if (increment.slides) increment.slides->project(extra);
@@ -103,17 +104,19 @@ LinearStatus Newton::factor_whole(const Increment& increment) {
   whole_->values = effective_.values;
   add(*whole_, 1, *followers_);
   if (increment.slides) increment.slides->project(*whole_);
-  if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads);
+  if (!unsymmetric_) unsymmetric_ = make_unsymmetric(model_.settings.threads, model_.settings.pulse);
   return unsymmetric_->factor(*whole_, increment.fixed);
 }
 
 LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step) {
   const Stopwatch watch(seconds_linear_);
+  pulse();
   LinearStatus status = factor(increment);
   // A pressure that follows an open face makes the symmetric part indefinite long before anything buckles.
   whole_taken_ = followers_ && status == LinearStatus::not_positive_definite;
   if (whole_taken_) status = factor_whole(increment);
   if (status != LinearStatus::done) return status;
+  pulse();
   Vector right = residual / increment.motion.force_share, product;
   if (jump.size() > 0) {
     multiply(tangent_, jump, product);

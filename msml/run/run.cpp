@@ -81,9 +81,9 @@ class Scheduler {
   void run_one(int node) {
     NodeReport& report = result_.nodes[at(node)];
     if (from_shelf(node, report)) return;
-    watcher_.started(node);
     const Clock::time_point start = Clock::now();
     try {
+      watcher_.started(node);
       results_[at(node)] = run_node(graph_, node, results_, registry_, options_, watcher_, report);
       report.status = NodeStatus::done;
     } catch (const Error& error) {

@@ -43,7 +43,7 @@ class Shelf {
   virtual void put(int node, const Shelved& result) = 0;
 };
 
-/// Told what happens while nodes run; calls come from any thread.
+/// Told what happens while nodes run; calls come from any thread. An Error thrown by started or progress ends the node.
 class Watcher {
  public:
   virtual ~Watcher() = default;

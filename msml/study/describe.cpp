@@ -67,6 +67,10 @@ Part<Truth> reference_tag() {
   const auto file = tag.parameter<std::string>("file", {.optional = true, .doc = "a mesh with the field"});
   const auto expression = tag.parameter<Formulas>(
       "expression", {.optional = true, .doc = "the exact field, a formula in X, Y, Z, t for each component"});
+  const auto limit = tag.parameter("limit", {.unit = "seconds",
+                                             .range = positive(),
+                                             .optional = true,
+                                             .doc = "of the run of set, where it is not that of the study's runs"});
   const auto time = tag.parameter("time", {.unit = "time", .fallback = 0.0, .doc = "value of t in expression"});
   const auto extrapolate = tag.parameter<std::string>(
       "extrapolate", {.optional = true,
@@ -79,6 +83,9 @@ Part<Truth> reference_tag() {
       if (record.has(set)) truth.set = parse_settings(record[set], record.where, fault);
       if (record.has(expression)) truth.expected = record[expression];
       truth.extrapolate = text_of(record, extrapolate);
+      truth.limit = record.has(limit) ? record[limit] : 0;
+      if (record.has(limit) && !record.has(set))
+        fault(record.where, "limit is that of the run of set: give set, or no limit");
       if (record.has(set) + record.has(file) + record.has(expression) + record.has(extrapolate) != 1)
         fault(record.where, "reference needs one of set, file, expression, extrapolate");
       return truth;
@@ -275,11 +282,15 @@ Description study_tag(StudyKeys& k) {
                                       .optional = true,
                                       .doc = "a run whose passes have taken this long is not repeated again; the "
                                              "column passes says how often it was timed"});
-  k.limit = tag.parameter("limit", {.unit = "seconds",
-                                    .range = positive(),
-                                    .optional = true,
-                                    .doc = "a run that takes longer is ended, where it next tells of its progress, and "
-                                           "is a data point with status 'limit'; the reference has no limit"});
+  k.limit = tag.parameter(
+      "limit",
+      {.unit = "seconds",
+       .range = positive(),
+       .optional = true,
+       .doc =
+           "a run that takes longer is ended and is a data point with status 'limit'; looked at between tasks, and in "
+           "them between passes of meshing, iterations, grids and factorisations, of "
+           "which one that has begun is finished; the reference has the same limit"});
   tag.allow({"vary", 1});
   tag.allow({"reference", 0, 1});
   tag.allow({"measure"});

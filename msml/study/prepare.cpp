@@ -144,7 +144,8 @@ class Preparation {
   std::string truth_key(const Study& study) const {
     std::string key;
     if (study.truth) {
-      key = fmt::format("{} {}", study.truth->file, study.truth->time) + stamp(study.truth->file);
+      key =
+          fmt::format("{} {} {}", study.truth->file, study.truth->time, study.truth->limit) + stamp(study.truth->file);
       for (const Formula& formula : study.truth->expected) key += fmt::format(" {} {}", formula.text, formula.number);
     }
     for (const Measure& m : study.measures)

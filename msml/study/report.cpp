@@ -103,7 +103,8 @@ Json definition(const Study& study) {
                          {"file", study.truth->file},
                          {"extrapolate", study.truth->extrapolate},
                          {"expected", formulas_json(study.truth->expected)},
-                         {"time", study.truth->time}};
+                         {"time", study.truth->time},
+                         {"limit", study.truth->limit > 0 ? Json(study.truth->limit) : Json()}};
   for (const Measure& each : study.measures) json["measures"].push_back(measure_json(each));
   json["charts"] = Json::array();
   for (const Chart& each : study.charts) json["charts"].push_back(chart_json(each));

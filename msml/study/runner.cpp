@@ -28,20 +28,22 @@ Error beyond(double limit) {
   return Error(fmt::format("ended after its limit of {} s", limit), {}, Failure::interrupted);
 }
 
-/// Ends a run that takes longer than its limit, the next time it reports progress.
+/// Ends a run that takes longer than its limit, before the next node or the next time it reports progress.
 class Stopwatch final : public Watcher {
  public:
   explicit Stopwatch(double limit) : limit_(limit) {}
-  void started(int) override {}
-  void progress(int, double, const std::string&) override {
-    if (limit_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() > limit_) throw beyond(limit_);
-  }
+  void started(int) override { look(); }
+  void progress(int, double, const std::string&) override { look(); }
   void finished(int, const NodeReport&) override {}
   void note(int, const std::string&) override {}
   void warning(int, const std::string&) override {}
   void print(int, const std::string&) override {}
 
  private:
+  void look() const {
+    if (limit_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() > limit_) throw beyond(limit_);
+  }
+
   double limit_;
   Clock::time_point start_ = Clock::now();
 };
@@ -100,7 +102,14 @@ class Runner {
   Runner(const Study& study, const Registry& registry, const StudyOptions& options, SharedResults& results)
       : study_(study), registry_(registry), options_(options), results_(results) {}
 
-  std::vector<std::string> row(const StudyRun& run, std::size_t number) {
+  /// The cells of a run, and whether a limit ended it or its reference.
+  struct Told {
+    std::vector<std::string> cells;
+    bool beyond_limit = false;
+  };
+
+  Told row(const StudyRun& run, std::size_t number) {
+    Told told;
     Row row{.status = "refused",
             .reason = run.reason,
             .warnings = {},
@@ -116,10 +125,15 @@ class Runner {
       } catch (const Error& error) {
         row.status = std::string(error.what()).starts_with(reference_failed) ? "no reference" : status_of(error);
         row.reason = error.str();
+        told.beyond_limit = error.failure() == Failure::interrupted;
       }
     }
-    return cells(run, row);
+    told.cells = cells(run, row);
+    return told;
   }
+
+  /// From now on no run waits for another: a reference that has no time now never has.
+  void one_by_one() { one_by_one_ = true; }
 
   std::size_t computed_apart() const { return apart_; }
 
@@ -136,7 +150,8 @@ class Runner {
     std::optional<RunResult> truth;
     if (run.reference) {
       truth_shelf.emplace(results_, run.reference->keys, 0);
-      truth = reference_result(*run.reference, *truth_shelf, folder / "reference");
+      truth = reference_result(*run.reference, *truth_shelf, folder / "reference",
+                               run.study.truth->limit > 0 ? run.study.truth->limit : study_.limit);
     }
     double spent = 0;
     for (int repetition = 0; repetition < study_.repetitions(); ++repetition) {
@@ -171,18 +186,19 @@ class Runner {
   }
 
   /// A reference that failed once is not tried again for the next run.
-  RunResult reference_result(const Prepared& reference, RunShelf& shelf, const fs::path& folder) {
+  RunResult reference_result(const Prepared& reference, RunShelf& shelf, const fs::path& folder, double limit) {
     {
       const std::lock_guard lock(mutex_);
       if (const auto known = failed_.find(&reference); known != failed_.end())
         throw Error(known->second, {}, Failure::internal);
     }
-    RunResult result = pass(reference, shelf, folder, 0);
+    RunResult result = pass(reference, shelf, folder, limit);
     if (result.errors.empty()) return result;
-    const std::string why = reference_failed + result.errors.front().str();
+    const Error& error = result.errors.front();
+    const std::string why = reference_failed + error.str();
     const std::lock_guard lock(mutex_);
-    failed_[&reference] = why;
-    throw Error(why, {}, Failure::internal);
+    if (one_by_one_ || error.failure() != Failure::interrupted) failed_[&reference] = why;
+    throw Error(why, {}, error.failure());
   }
 
   RunResult pass(const Prepared& scene, RunShelf& shelf, const fs::path& folder, double limit) {
@@ -224,6 +240,7 @@ class Runner {
   const Registry& registry_;
   const StudyOptions& options_;
   SharedResults& results_;
+  std::atomic<bool> one_by_one_ = false;
   std::mutex mutex_;
   std::map<const Prepared*, std::string> failed_;  ///< references, and why
   std::atomic<std::size_t> apart_ = 0;             ///< nodes computed in runs that share nothing
@@ -290,7 +307,7 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
   std::mutex mutex;
   std::atomic<std::size_t> next = 0;
   const bool alone = study.alone() || options.jobs < 2;
-  const auto status = static_cast<std::size_t>(table.find("status"));
+  if (alone) runner.one_by_one();
   std::vector<std::size_t> late;
   const auto keep = [&](std::size_t run, std::vector<std::string> row) {
     results.release(all_used(runs[run]));
@@ -303,12 +320,12 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
   };
   const auto work = [&] {
     for (std::size_t i = next++; i < open.size(); i = next++) {
-      auto row = runner.row(runs[open[i]], open[i]);
+      Runner::Told row = runner.row(runs[open[i]], open[i]);
       const std::lock_guard lock(mutex);
-      if (!alone && row[status] == "limit")
+      if (!alone && row.beyond_limit)
         late.push_back(open[i]);  // it may have waited for another: once more, by itself
       else
-        keep(open[i], std::move(row));
+        keep(open[i], std::move(row.cells));
     }
   };
   {
@@ -317,7 +334,8 @@ Table run_study(const Study& study, const std::vector<StudyRun>& all_runs, const
     work();
   }
   std::sort(late.begin(), late.end());
-  for (const std::size_t i : late) keep(i, runner.row(runs[i], i));
+  runner.one_by_one();
+  for (const std::size_t i : late) keep(i, runner.row(runs[i], i).cells);
   extrapolate(study, table);
   write_whole(options.folder / "results.csv", to_csv(table));
   if (!options.keep) {

@@ -30,6 +30,7 @@ struct Truth {
   Formulas expected;        ///< in X, Y, Z, t
   double time = 0;          ///< value of t in expected
   std::string extrapolate;  ///< variable whose values go from coarse to fine
+  double limit = 0;         ///< seconds of the run of `set`; 0: that of all runs
   Location where;
 };
 

@@ -12,7 +12,8 @@ namespace {
 
 class Cholesky final : public LinearSystem {
  public:
-  Cholesky(int threads, std::size_t memory) : threads_(threads), memory_(memory) {
+  Cholesky(int threads, std::size_t memory, std::function<void()> pulse)
+      : threads_(threads), memory_(memory), pulse_(std::move(pulse)) {
     cholmod_start(&common_);
     common_.print = 0;
     common_.supernodal = CHOLMOD_SUPERNODAL;
@@ -46,6 +47,7 @@ class Cholesky final : public LinearSystem {
         return LinearStatus::out_of_memory;
       }
       large_ = common_.fl > 2e10;
+      if (pulse_) pulse_();
     }
     const BlasThreads blas(large_ ? threads_ : 1);
     lower_.gather(A, values_.data());
@@ -114,6 +116,7 @@ class Cholesky final : public LinearSystem {
 
   int threads_;
   std::size_t memory_;
+  std::function<void()> pulse_;
   bool large_ = false;  ///< enough operations that waking a second thread for each dense block pays
   cholmod_common common_{};
   cholmod_factor* factor_ = nullptr;
@@ -125,8 +128,8 @@ class Cholesky final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory) {
-  return std::make_unique<Cholesky>(threads, memory);
+std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory, std::function<void()> pulse) {
+  return std::make_unique<Cholesky>(threads, memory, std::move(pulse));
 }
 
 std::string suitesparse_version() {

@@ -92,7 +92,7 @@ class WithFallback final : public LinearSystem {
     iterations += active_->iterations - before;
     if (status != LinearStatus::limit || gave_up) return status;
     gave_up = true;
-    active_ = make_cholesky(settings_.threads);
+    active_ = make_cholesky(settings_.threads, available_memory(), settings_.pulse);
     status = active_->factor(*matrix_, fixed_);
     return status == LinearStatus::done ? active_->solve(b, tolerance, x) : status;
   }
@@ -117,7 +117,7 @@ std::unique_ptr<LinearSystem> make_linear_system(const Settings& settings, const
   const bool factored = settings.linear_solver == LinearSolver::direct ||
                         (settings.linear_solver == LinearSolver::automatic &&
                          (unknowns <= smallest_iterated || (!geometry.solid && unknowns <= largest_factor)));
-  if (factored) return make_cholesky(settings.threads);
+  if (factored) return make_cholesky(settings.threads, available_memory(), settings.pulse);
   const bool multigrid = settings.preconditioner == Preconditioner::multigrid ||
                          (settings.preconditioner == Preconditioner::automatic && geometry.solid);
   auto iterative = multigrid ? make_multigrid(geometry, settings.pulse)

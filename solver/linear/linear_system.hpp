@@ -57,16 +57,18 @@ class LinearSystem {
 };
 
 /// Refuses, as out_of_memory, a factor larger than `memory` bytes: the system would rather end the whole program.
-std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory = available_memory());
+/// `pulse` is called between the analysis and the factorisation; an exception of its own ends both.
+std::unique_ptr<LinearSystem> make_cholesky(int threads, std::size_t memory = available_memory(),
+                                            std::function<void()> pulse = {});
 /// `pulse` is called in each iteration; an exception of its own ends the solution.
 std::unique_ptr<LinearSystem> make_conjugate_gradient(Preconditioner preconditioner, std::function<void()> pulse = {});
-/// Conjugate gradients preconditioned by multigrid.
+/// Conjugate gradients preconditioned by multigrid, with a pulse for each grid that is set up too.
 std::unique_ptr<LinearSystem> make_multigrid(const NodeGeometry& geometry, std::function<void()> pulse = {});
 /// L D L^T with pivots of order one and two, by MUMPS in the order of METIS; counts negative pivots and refuses a
 /// singular matrix, but never an indefinite one.
-std::unique_ptr<LinearSystem> make_indefinite(int threads);
+std::unique_ptr<LinearSystem> make_indefinite(int threads, std::function<void()> pulse = {});
 /// L U by MUMPS, for any matrix on the pattern.
-std::unique_ptr<LinearSystem> make_unsymmetric(int threads);
+std::unique_ptr<LinearSystem> make_unsymmetric(int threads, std::function<void()> pulse = {});
 
 /// x from b by a factorisation and steps of refinement: `correct` adds A^-1 residual to x and is false where it cannot.
 /// Round-off grows with the condition number; refinement wins it back unless the matrix is singular.

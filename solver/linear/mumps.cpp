@@ -69,7 +69,8 @@ Entries make_entries(const Pattern& pattern, const Mask& fixed, bool symmetric) 
 
 class Mumps final : public LinearSystem {
  public:
-  Mumps(bool symmetric, int threads) : symmetric_(symmetric), threads_(threads) {}
+  Mumps(bool symmetric, int threads, std::function<void()> pulse)
+      : symmetric_(symmetric), threads_(threads), pulse_(std::move(pulse)) {}
   ~Mumps() override { release(); }
   Mumps(const Mumps&) = delete;
   Mumps& operator=(const Mumps&) = delete;
@@ -79,6 +80,7 @@ class Mumps final : public LinearSystem {
     if (!ready_ || fixed != fixed_) {
       const LinearStatus status = analyse(*A.pattern, fixed);
       if (status != LinearStatus::done) return status;
+      if (pulse_) pulse_();
     }
     if (entries_.size() == 0) return LinearStatus::done;
     const BlasThreads blas(large_ ? threads_ : 1);
@@ -173,6 +175,7 @@ class Mumps final : public LinearSystem {
 
   bool symmetric_;
   int threads_;
+  std::function<void()> pulse_;
   bool ready_ = false;
   bool large_ = false;  ///< enough operations that waking a second thread for each dense block pays
   DMUMPS_STRUC_C data_{};
@@ -184,8 +187,13 @@ class Mumps final : public LinearSystem {
 
 }  // namespace
 
-std::unique_ptr<LinearSystem> make_indefinite(int threads) { return std::make_unique<Mumps>(true, threads); }
-std::unique_ptr<LinearSystem> make_unsymmetric(int threads) { return std::make_unique<Mumps>(false, threads); }
+std::unique_ptr<LinearSystem> make_indefinite(int threads, std::function<void()> pulse) {
+  return std::make_unique<Mumps>(true, threads, std::move(pulse));
+}
+
+std::unique_ptr<LinearSystem> make_unsymmetric(int threads, std::function<void()> pulse) {
+  return std::make_unique<Mumps>(false, threads, std::move(pulse));
+}
 
 std::string mumps_version() { return MUMPS_VERSION; }
 

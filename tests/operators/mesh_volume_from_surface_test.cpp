@@ -52,6 +52,36 @@ TEST(MeshVolumeFromSurface, IsTheSameToTheLastBitEveryTime) {
   EXPECT_TRUE(same(*output<Mesh>(run(tag, arguments)), *output<Mesh>(run(tag, arguments))));
 }
 
+/// Counts how often each pass was told, and ends the meshing when one was told for the last time that it may.
+class Teller : public QuietReporter {
+ public:
+  explicit Teller(std::string last) : last_(std::move(last)) {}
+  void progress(double, const std::string& words) override {
+    if (++told[words] == 2 && words == last_) throw Error("ended inside " + words);
+  }
+  std::map<std::string, int> told;
+
+ private:
+  std::string last_;
+};
+
+// A time limit ends a pass from inside: the first telling is that of its beginning, the second comes from its midst.
+TEST(MeshVolumeFromSurface, PassesCanBeEndedInTheirMidst) {
+  for (const char* pass : {"odt", "lloyd", "perturbing", "exuding"}) {
+    const bool perturb = pass == std::string("perturbing");
+    const Arguments arguments{{"surfaceMesh", sphere(1)},
+                              {"facetSize", 0.15},
+                              {"cellSize", 0.15},
+                              {perturb                          ? "pertube"
+                               : pass == std::string("exuding") ? "exude"
+                                                                : pass,
+                               true}};
+    Teller teller(pass);
+    EXPECT_THROW(run(tag, arguments, &teller), Error) << pass;
+    EXPECT_EQ(teller.told[pass], 2) << pass;
+  }
+}
+
 TEST(MeshVolumeFromSurface, LeavesCavitiesEmptyAndFindsEveryPart) {
   // A cube with a cubic cavity, and a small cube far away: 8 - 1 + 0.001.
   Surface cavity = box(Vec3(0.5, 0.5, 0.5), Vec3(1.5, 1.5, 1.5));

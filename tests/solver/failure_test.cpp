@@ -121,6 +121,23 @@ TEST(Failure, AnIncrementEndsWhereItsPulseThrows) {
   }
 }
 
+// What takes long between two iterations is looked at in its midst: analysis and factorisation, grid after grid.
+TEST(Failure, SetUpsOfLinearSolversEndWhereTheirPulseThrows) {
+  const Model model = beam_model(4, CellKind::tet10, 0.3, Strain::small);
+  const Equations equations(model);
+  BlockMatrix mass(equations.elements().pattern());
+  add(mass, 1, equations.mass());
+  const Mask none(static_cast<std::size_t>(equations.size()), 0);
+  const std::function<void()> enough = [] { throw Error("enough"); };
+  EXPECT_THROW(make_cholesky(1, available_memory(), enough)->factor(mass, none), Error);
+  EXPECT_THROW(make_indefinite(1, enough)->factor(mass, none), Error);
+  EXPECT_THROW(make_unsymmetric(1, enough)->factor(mass, none), Error);
+  int calls = 0;
+  const auto multigrid = make_multigrid(equations.geometry(), [&] { ++calls; });
+  EXPECT_EQ(multigrid->factor(mass, none), LinearStatus::done);
+  EXPECT_GE(calls, 2) << "one for each grid below the finest";
+}
+
 // Two cubes that share one edge: the second can turn about it.
 TEST(Failure, AHingeIsASingularMatrix) {
   Mesh one = box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), two = one;

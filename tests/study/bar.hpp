@@ -7,7 +7,7 @@ namespace msml::studies {
 
 /// The scene with the tags of `studies`, which start on its last line.
 inline std::string bar(const std::string& studies, const std::string& units = "") {
-  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/><var name="low" value="-9"/></variables>
+  return R"(<msml><variables><var name="n" value="1"/><var name="E" value="1000"/><var name="kind" value="tet4"/><var name="low" value="-9"/><var name="parts" value="1"/></variables>
 <workflow>
   <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" when="${kind} = tet4"/>
   <GenerateBoxMesh id="mesh" size="4 4 4" divisions="${n} ${n} ${n}" quadratic="true" when="${kind} = tet10"/>
@@ -22,7 +22,7 @@ inline std::string bar(const std::string& studies, const std::string& units = ""
   <output> <displacement id="u"/> <probe id="tip" point="2 2 4" field="displacement"/> </output>
 </object></scene>
 <environment units=")" +
-         units + R"("><solver timeIntegration="static" linearSolver="direct"/>
+         units + R"("><solver timeIntegration="static" linearSolver="direct" loadSteps="${parts}"/>
   <simulation><step gravity="0 0 -10"/></simulation></environment>
 <studies>)" +
          studies + "</studies></msml>";

@@ -43,7 +43,7 @@ TEST(StudyLanguage, NamesThatDoNotExistAreFoundAtTheirLine) {
             "s.xml:5: measure 'n': the scene has no task or output n");
   EXPECT_EQ(
       study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure time=\"tota\"/>"),
-      "s.xml:5: time = tota is none of total, own, simulation, step, setup, assembly, linear, and no task has this id "
+      "s.xml:5: time = tota is none of run, apart, total, own, simulation, step, setup, assembly, linear, and no task has this id "
       "(did you mean 'total'?)");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><measure value=\"m\"/>\n<chart x=\"h\" y=\"mm\"/>"),
             "s.xml:5: y = mm is no column of the study (did you mean 'm'?); it has h, m, unknowns");

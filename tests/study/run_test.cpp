@@ -269,12 +269,30 @@ TEST(StudyRun, AReferenceThatFailsIsTriedOnce) {
   EXPECT_EQ(three.sharing.computed, one.sharing.computed);
 }
 
+TEST(StudyRun, AReferenceHasALimitToo) {
+  const std::string vary = R"( <vary variable="n" values="1 1"/> <measure error="RMS"/> )";
+  for (const int jobs : {1, 2}) {
+    const tiny::Folder folder;
+    const Ran ran =
+        run(R"(<study id="s">)" + vary + R"(<reference set="n=12" limit="1e-6"/></study>)", folder, {}, {}, jobs);
+    for (std::size_t row = 0; row < 2; ++row) {
+      EXPECT_EQ(ran.table.text(row, "status"), "no reference");
+      EXPECT_THAT(ran.table.text(row, "reason"), ::testing::HasSubstr("ended after its limit of 1e-06 s"));
+    }
+  }
+  const tiny::Folder folder;
+  const Ran own = run(R"(<study id="s" limit="1e-6">)" + vary + R"(<reference set="n=1" limit="60"/></study>)", folder);
+  EXPECT_EQ(own.table.text(0, "status"), "limit") << "the reference has its own";
+  const Ran same = run(R"(<study id="s" limit="1e-6">)" + vary + R"(<reference set="n=1"/></study>)", folder);
+  EXPECT_EQ(same.table.text(0, "status"), "no reference");
+}
+
 TEST(StudyRun, ARunBeyondItsLimitIsEndedAndSaysSo) {
   const tiny::Folder folder;
-  const Ran ran =
-      run(R"(<study id="s" limit="1e-6"> <vary variable="E" values="1000"/> <measure probe="tip"/></study>)", folder);
+  const Ran ran = run(
+      R"(<study id="s" limit="0.3"> <vary variable="parts" values="100000"/> <measure probe="tip"/></study>)", folder);
   EXPECT_EQ(ran.table.text(0, "status"), "limit");
-  EXPECT_NE(ran.table.text(0, "reason").find("ended after its limit of 1e-06 s"), std::string::npos);
+  EXPECT_NE(ran.table.text(0, "reason").find("ended after its limit of 0.3 s"), std::string::npos);
   EXPECT_EQ(ran.table.number(0, "unknowns"), 3 * (8 - 4)) << "a chart marks it at its size";
 }
 

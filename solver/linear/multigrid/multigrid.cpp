@@ -68,6 +68,7 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
+  beat();
   grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
   if (nearly_incompressible()) reach_further(grid.level, false);
   const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
@@ -81,6 +82,7 @@ template <int B, class Matrix>
 bool Multigrid::coarsen(Grid<B>& grid, const Matrix& A, const std::vector<char>& skip, std::optional<Step<B>>& step,
                         Modes& modes) {
   if (grid.solved) return false;
+  beat();
   if (!step && fresh_) {
     const Aggregates groups = aggregate<B>(A, skip);
     if (groups.count > 0 && 3 * groups.count <= 2 * A.view().rows()) {

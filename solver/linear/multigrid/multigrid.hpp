@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A multigrid cycle as preconditioner.
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -24,7 +25,9 @@ namespace msml::fe {
 /// nu = 0.49, on beams from 10^4 to 10^6 unknowns (43 at 5x10^6).
 class Multigrid {
  public:
-  explicit Multigrid(NodeGeometry geometry) : geometry_(std::move(geometry)) {}
+  /// `pulse` is called while grids are set up; an exception of its own ends the set-up.
+  explicit Multigrid(NodeGeometry geometry, std::function<void()> pulse = {})
+      : geometry_(std::move(geometry)), pulse_(std::move(pulse)) {}
   /// Takes the free part of a symmetric positive definite matrix. Grids are made anew when the mask changes; otherwise
   /// only their matrices. not_positive_definite if that shows.
   LinearStatus set(const BlockMatrix& A, const Mask& fixed);
@@ -60,7 +63,12 @@ class Multigrid {
   void descend(Grid<B>& grid, const std::optional<Step<B>>& step, std::size_t below);
   void prepare_modes(const std::vector<int>& nodes, const std::vector<char>& fixed, Modes& modes) const;
 
+  void beat() const {
+    if (pulse_) pulse_();
+  }
+
   NodeGeometry geometry_;
+  std::function<void()> pulse_;
   Mask fixed_;
   bool made_ = false, fresh_ = true;  ///< fresh_: the grids are being made
   std::optional<Corners> corners_;

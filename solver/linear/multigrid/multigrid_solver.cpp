@@ -21,7 +21,7 @@ constexpr double worth_a_set_up = 10;  // iterations that cost as much as settin
 class MultigridSolver final : public LinearSystem {
  public:
   MultigridSolver(const NodeGeometry& geometry, std::function<void()> pulse)
-      : geometry_(geometry), grids_(geometry), pulse_(std::move(pulse)) {}
+      : geometry_(geometry), grids_(geometry, pulse), pulse_(std::move(pulse)) {}
 
   void place(const Vector& displacement) override { displacement_ = displacement; }
   void expect(const Vector& solution) override { guess_ = solution; }
