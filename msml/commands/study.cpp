@@ -15,6 +15,7 @@
 #include "msml/run/program.hpp"
 #include "msml/study/chart.hpp"
 #include "msml/study/columns.hpp"
+#include "msml/study/extrapolate.hpp"
 #include "msml/study/page.hpp"
 #include "msml/study/report.hpp"
 #include "msml/study/runner.hpp"
@@ -57,6 +58,13 @@ void draw_charts(const Study& study, const Table& table, const Compilation& scen
       std::fprintf(stderr, "%s: %s\n", chart.where.str().c_str(), error.what());
     }
   }
+}
+
+/// Errors that stay empty for want of a limit.
+void print_missing_limits(const Study& study, Table table) {
+  for (const NoLimit& each : extrapolate(study, table))
+    std::fprintf(stderr, "%s: no error for %s%s%s: %s\n", study.where.str().c_str(), each.measure.c_str(),
+                 each.others.empty() ? "" : " at ", each.others.c_str(), each.why.c_str());
 }
 
 class StudyRunner {
@@ -104,6 +112,7 @@ class StudyRunner {
         },
         sharing);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    print_missing_limits(study, table);
     const Session session{.scene = compilation_,
                           .given = compile_options_,
                           .options = options,

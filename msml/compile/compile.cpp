@@ -59,11 +59,12 @@ void run_passes(Work& work, const Tag& root) {
   lower_objects(work, root);
   read_units(work, root);
   check_holders(work, root);
+  const bool sound = work.out.faults.empty();
   read_studies(work, root);
   keep_variables(work);
   note_unused(work);
   order_nodes(work);
-  examine_nodes(work);
+  if (sound) examine_nodes(work);  // else values may be missing
 }
 
 /// The faults of the document and, where it has a root, those of the scene.

@@ -15,7 +15,6 @@ Record literal_record(const Binding& binding) {
 }
 
 void examine_nodes(Work& work) {
-  if (!work.out.faults.empty()) return;  // values may be missing
   for (const Node& node : work.out.graph.nodes)
     if (node.op && node.op->examiner())
       node.op->examiner()(literal_record(node.args), [&](const Error& error) {

@@ -111,7 +111,8 @@ void check_measure(Work& work, const Study& study, const Measure& measure) {
                     "no task has this id{}",
                     quoted_value(measure.what), did_you_mean(measure.what, names)));
   }
-  if (measure.against_truth && !study.truth) work.fault(measure.where, "an error needs a <reference> in the study");
+  if (measure.against_truth && !study.truth && !study.unread.contains("reference"))
+    work.fault(measure.where, "an error needs a <reference> in the study");
 }
 
 void check_chart(Work& work, const Study& study, const Chart& chart) {
@@ -120,6 +121,7 @@ void check_chart(Work& work, const Study& study, const Chart& chart) {
   for (const Measure& measure : study.measures) columns.push_back(measure.id);
   columns.push_back("unknowns");
   const auto known = [&](const std::string& name, const std::vector<std::string>& names, const char* what) {
+    if (study.unread.contains("vary") || (&names == &columns && study.unread.contains("measure"))) return;
     if (std::find(names.begin(), names.end(), name) == names.end())
       work.fault(chart.where, fmt::format("{} = {} is no {} of the study{}; it has {}", what, quoted_value(name),
                                           &names == &variables ? "variable" : "column", did_you_mean(name, names),
@@ -133,12 +135,19 @@ void check_chart(Work& work, const Study& study, const Chart& chart) {
 }
 
 void check_extrapolation(Work& work, const Study& study) {
-  if (!study.truth || study.truth->extrapolate.empty()) return;
+  if (!study.truth || study.truth->extrapolate.empty() || study.unread.contains("vary")) return;
   const std::string& name = study.truth->extrapolate;
+  std::set<std::string> values;
   for (const Vary& vary : study.vary)
-    if (vary.variables.size() == 1 && vary.variables.front() == name && vary.values.size() >= 3) return;
-  work.fault(study.truth->where,
-             fmt::format("extrapolate = {}: no <vary> gives this variable three values or more", quoted_value(name)));
+    for (std::size_t i = 0; i < vary.variables.size(); ++i)
+      if (vary.variables[i] == name)
+        for (const auto& tuple : vary.values) values.insert(i < tuple.size() ? tuple[i] : "");
+  if (study.combine == Combine::latin_hypercube)
+    work.fault(study.truth->where,
+               "extrapolate needs values from coarse to fine, but combine = latinHypercube draws them");
+  else if (values.size() < 3)
+    work.fault(study.truth->where,
+               fmt::format("extrapolate = {}: no <vary> gives this variable three values or more", quoted_value(name)));
 }
 
 void check_study(Work& work, Study& study, const FaultSink& fault) {
@@ -164,7 +173,34 @@ void check_study(Work& work, Study& study, const FaultSink& fault) {
     if (measure.unit.empty()) measure.unit = measure.value_unit;
   }
   for (const Chart& chart : study.charts) check_chart(work, study, chart);
-  expand(study, fault);
+  if (!study.unread.contains("vary")) expand(study, fault);
+}
+
+/// Gives attributes whose value is missing or wrong, which has been told, one that may stand.
+void heal(Binding& binding) {
+  for (std::size_t i = 0; i < binding.sources.size(); ++i) {
+    auto* value = std::get_if<Value>(&binding.sources[i]);
+    if (!value || type(*value) != Type::nothing) continue;
+    const Slot& slot = binding.description->slots()[i];
+    *value = slot.required ? Value(std::string("unnamed")) : slot.fallback;
+    binding.given[i] = slot.required;
+  }
+}
+
+/// The study of a tag with as much of what stands in it as is free of faults of its own.
+Study read_study(Work& work, const Tag& tag, const FaultSink& fault) {
+  Binding binding = bind_attributes(work, tag);
+  heal(binding);
+  std::set<std::string> unread;
+  for (const Tag& inner : tag.children) {
+    const std::size_t before = work.out.faults.size();
+    Binding part = bind_tree(work, inner);
+    if (work.out.faults.size() == before)
+      binding.children.push_back(std::move(part));
+    else
+      unread.insert(inner.description->category());
+  }
+  return make_study(literal_record(binding), fault, std::move(unread));
 }
 
 }  // namespace
@@ -176,17 +212,13 @@ void read_studies(Work& work, const Tag& root) {
   const FaultSink fault = [&](const Location& where, const std::string& what) { work.fault(where, what); };
   std::map<std::string, Location> ids;
   for (const Tag& tag : studies->children) {
-    const std::size_t before = work.out.faults.size();
-    const Record record = literal_record(bind_tree(work, tag));
-    if (work.out.faults.size() > before) continue;  // values may be missing
-    Study study = make_study(record, fault);
+    Study study = read_study(work, tag, fault);
     if (study.id.find_first_of("/${}. \\*\"'<>|") != std::string::npos || study.id.empty())
       work.fault(study.where, fmt::format("id = '{}' names a folder: no blanks, dots, slashes, quotes, braces or *",
                                           quoted_value(study.id)));
     if (const auto [first, fresh] = ids.insert({study.id, study.where}); !fresh)
       work.fault(study.where, fmt::format("two studies are called {}: the other one is at line {}",
                                           quoted_value(study.id), first->second.line));
-    if (work.out.faults.size() > before) continue;
     check_study(work, study, fault);
     work.out.studies.push_back(std::move(study));
   }

@@ -101,7 +101,7 @@ void read_studies(Work& work, const Tag& root);
 // examine.cpp
 /// The record of a binding as far as the scene's text says; what flows along edges is absent.
 Record literal_record(const Binding& binding);
-/// Asks each operator what makes no sense in its record; only of a scene without faults so far.
+/// Asks each operator what makes no sense in its record; only of a scene whose own tags have no faults.
 void examine_nodes(Work& work);
 
 // order.cpp

@@ -191,6 +191,7 @@ std::vector<Value> run_node(const Graph& graph, int index, const Results& result
   } catch (const Error& error) {
     throw Error(named(error.what()), error.where().file.empty() ? node.where : error.where(), error.failure());
   } catch (const std::bad_alloc&) {
+    report.facts["ended"] = R"("out of memory")";
     throw Error(named("not enough memory"), node.where, Failure::internal);
   } catch (const std::exception& error) {
     throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);

@@ -75,7 +75,7 @@ Part<Truth> reference_tag() {
   const auto extrapolate = tag.parameter<std::string>(
       "extrapolate", {.optional = true,
                       .doc = "a variable that varies from coarse to fine: probes and values are held against the limit "
-                             "of their last three"});
+                             "of their last three, one limit for each setting of the other variables"});
   tag.build([=](const Record& record) {
     return [=](const FaultSink& fault) {
       Truth truth{
@@ -298,9 +298,21 @@ Description study_tag(StudyKeys& k) {
   return tag;
 }
 
+/// The parts of a study of one kind that make sense; the kind is `unread` where one does not.
 template <class Result>
-Result build(const Record& record, const FaultSink& fault) {
-  return dynamic_cast<const Part<Result>&>(*record.description).make(record)(fault);
+std::vector<Result> build(const Record& study, const std::string& kind, const FaultSink& fault,
+                          std::set<std::string>& unread) {
+  std::vector<Result> parts;
+  for (const Record* each : study.of_category(kind)) {
+    bool good = true;
+    const FaultSink told = [&](const Location& where, const std::string& what) { good = false, fault(where, what); };
+    Result part = dynamic_cast<const Part<Result>&>(*each->description).make(*each)(told);
+    if (good)
+      parts.push_back(std::move(part));
+    else
+      unread.insert(kind);
+  }
+  return parts;
 }
 
 void add(Registry& registry, Description description) {
@@ -321,7 +333,7 @@ void add_study_tags(Registry& registry) {
   registry.add(std::make_shared<const Part<Chart>>(chart_tag()));
 }
 
-Study make_study(const Record& record, const FaultSink& fault) {
+Study make_study(const Record& record, const FaultSink& fault, std::set<std::string> unread) {
   StudyKeys k;
   study_tag(k);  // the keys are always the same
   Study study{.id = record[k.id],
@@ -330,6 +342,7 @@ Study make_study(const Record& record, const FaultSink& fault) {
               .truth = {},
               .measures = {},
               .charts = {},
+              .unread = {},
               .where = record.where};
   const std::string& combine = record[k.combine];
   study.combine = combine == "product" ? Combine::product : combine == "zip" ? Combine::zip : Combine::latin_hypercube;
@@ -338,10 +351,11 @@ Study make_study(const Record& record, const FaultSink& fault) {
   study.repeat = record.has(k.repeat) ? static_cast<int>(record[k.repeat]) : 0;
   study.limit = record.has(k.limit) ? record[k.limit] : 0;
   study.enough = record.has(k.enough) ? record[k.enough] : 0;
-  for (const Record* each : record.of_category("vary")) study.vary.push_back(build<Vary>(*each, fault));
-  for (const Record* each : record.of_category("reference")) study.truth = build<Truth>(*each, fault);
-  for (const Record* each : record.of_category("measure")) study.measures.push_back(build<Measure>(*each, fault));
-  if (study.enough > 0 && !study.timed())
+  study.vary = build<Vary>(record, "vary", fault, unread);
+  for (Truth& each : build<Truth>(record, "reference", fault, unread)) study.truth = std::move(each);
+  study.measures = build<Measure>(record, "measure", fault, unread);
+  study.charts = build<Chart>(record, "chart", fault, unread);
+  if (study.enough > 0 && !study.timed() && !unread.contains("measure"))
     fault(record.where, "enough ends the repetition of timings, but no time is measured");
   for (Measure& m : study.measures) {
     const bool limit = m.against_truth && study.truth && !study.truth->extrapolate.empty();
@@ -349,7 +363,7 @@ Study make_study(const Record& record, const FaultSink& fault) {
     if (limit && !m.extrapolated)
       fault(m.where, "an extrapolated reference serves errors of a probe or a value, not those of a field");
   }
-  for (const Record* each : record.of_category("chart")) study.charts.push_back(build<Chart>(*each, fault));
+  study.unread = std::move(unread);
   return study;
 }
 

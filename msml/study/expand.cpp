@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "msml/compile/literal.hpp"
 
@@ -99,6 +100,10 @@ std::vector<Settings> latin_hypercube(const Study& study) {
         append(runs[i], vary, vary.values[static_cast<std::size_t>(s * static_cast<double>(vary.values.size()))]);
     }
   }
+  // Samples that rounding has made equal are one run.
+  std::set<Settings> seen;
+  if (std::any_of(study.vary.begin(), study.vary.end(), [](const Vary& vary) { return vary.whole; }))
+    std::erase_if(runs, [&](const Settings& run) { return !seen.insert(run).second; });
   return runs;
 }
 
@@ -121,6 +126,7 @@ std::vector<std::vector<std::string>> parse_values(const std::string& text, cons
 std::vector<std::vector<std::string>> range_values(const Vary& vary, int count) {
   std::vector<std::vector<std::string>> values;
   for (int i = 0; i < count; ++i) values.push_back({value_at(vary, count == 1 ? 0.0 : i / (count - 1.0))});
+  values.erase(std::unique(values.begin(), values.end()), values.end());  // rounding may make neighbours equal
   return values;
 }
 

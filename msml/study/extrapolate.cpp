@@ -18,28 +18,41 @@ double ratio(const std::array<double, 3>& h, double order) {
 /// Rows of one curve, in the order of the table.
 using Rows = std::vector<std::size_t>;
 
-std::optional<Limit> limit_of(const Table& table, const Rows& rows, const std::string& variable,
-                              const std::string& column) {
-  if (rows.size() < 3) return std::nullopt;
+/// The last three sizes and values of a curve of three rows at least.
+struct Finest {
   std::array<double, 3> sizes{}, values{};
+};
+
+Finest finest_of(const Table& table, const Rows& rows, const std::string& variable, const std::string& column) {
+  Finest three;
   for (std::size_t i = 0; i < 3; ++i) {
-    sizes[i] = table.number(rows[rows.size() - 3 + i], variable);
-    values[i] = table.number(rows[rows.size() - 3 + i], column);
+    three.sizes[i] = table.number(rows[rows.size() - 3 + i], variable);
+    three.values[i] = table.number(rows[rows.size() - 3 + i], column);
   }
-  if (sizes[2] > sizes[0])
-    for (double& size : sizes) size = 1 / size;
-  return richardson(sizes, values);
+  if (three.sizes[2] > three.sizes[0])
+    for (double& size : three.sizes) size = 1 / size;
+  return three;
 }
 
-void fill(const Measure& measure, const Rows& rows, const std::string& variable, Table& table) {
-  const auto limit = limit_of(table, rows, variable, measure.id + "_value");
-  if (!limit) return;
+/// Fills the errors of a curve; why it stays without, or "".
+std::string fill(const Measure& measure, const Rows& rows, const std::string& variable, Table& table) {
+  if (rows.size() < 3) return fmt::format("{} of the three runs that a limit needs have a value", rows.size());
+  const Finest three = finest_of(table, rows, variable, measure.id + "_value");
+  const auto limit = richardson(three.sizes, three.values);
+  if (!limit) return why_no_limit(three.sizes, three.values);
+  const double scale = measure.relative ? std::abs(limit->value) : 1;
+  if (scale == 0) return "the limit is 0, to which no error is relative";
   const auto column = static_cast<std::size_t>(table.find(measure.id));
-  for (const std::size_t row : rows) {
-    const double error = std::abs(table.number(row, measure.id + "_value") - limit->value);
-    const double scale = measure.relative ? std::abs(limit->value) : 1;
-    if (scale > 0) table.rows[row][column] = fmt::format("{:.10g}", error / scale);
-  }
+  for (const std::size_t row : rows)
+    table.rows[row][column] =
+        fmt::format("{:.10g}", std::abs(table.number(row, measure.id + "_value") - limit->value) / scale);
+  return {};
+}
+
+/// True if each value of a column goes with one value of the variable only: it is refined along with it.
+bool goes_along(const Table& table, const std::string& column, const std::string& variable) {
+  const std::vector<std::string> values = distinct(table, {column});
+  return values.size() > 1 && distinct(table, {column, variable}).size() == values.size();
 }
 
 }  // namespace
@@ -58,10 +71,25 @@ std::optional<Limit> richardson(const std::array<double, 3>& sizes, const std::a
   return Limit{values[2] - second * fine / (coarse - fine), low};
 }
 
-void extrapolate(const Study& study, Table& table) {
-  if (!study.truth || study.truth->extrapolate.empty()) return;
+std::string why_no_limit(const std::array<double, 3>& sizes, const std::array<double, 3>& values) {
+  if (richardson(sizes, values)) return {};
+  if (!(sizes[0] > sizes[1] && sizes[1] > sizes[2] && sizes[2] > 0))
+    return "the variable does not go from coarse to fine in numbers above 0";
+  const double first = values[0] - values[1], second = values[1] - values[2];
+  const std::string three =
+      fmt::format("the last three values {:.6g}, {:.6g}, {:.6g}", values[0], values[1], values[2]);
+  if (second == 0) return three + " end with two that are equal";
+  if (first / second <= 0) return three + " swing about, instead of approaching a limit from one side";
+  return three + (first / second < ratio(sizes, 0.1) ? " do not come closer to each other: no order of 0.1 or more"
+                                                     : " come closer faster than any order up to 10");
+}
+
+std::vector<NoLimit> extrapolate(const Study& study, Table& table) {
+  std::vector<NoLimit> without;
+  if (!study.truth || study.truth->extrapolate.empty()) return without;
+  const std::string& variable = study.truth->extrapolate;
   std::vector<std::string> others = study.variables();
-  std::erase(others, study.truth->extrapolate);
+  std::erase_if(others, [&](const std::string& each) { return each == variable || goes_along(table, each, variable); });
   for (const std::string& group : distinct(table, others))
     for (const Measure& measure : study.measures) {
       if (!measure.extrapolated) continue;
@@ -69,8 +97,10 @@ void extrapolate(const Study& study, Table& table) {
       for (std::size_t row = 0; row < table.rows.size(); ++row)
         if (table.words(row, others) == group && std::isfinite(table.number(row, measure.id + "_value")))
           rows.push_back(row);
-      fill(measure, rows, study.truth->extrapolate, table);
+      if (const std::string why = fill(measure, rows, variable, table); !why.empty())
+        without.push_back({measure.id, group, why});
     }
+  return without;
 }
 
 }  // namespace msml

@@ -3,6 +3,8 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "msml/study/study.hpp"
 #include "msml/study/table.hpp"
@@ -17,9 +19,18 @@ struct Limit {
 /// Nothing where the three values do not approach a limit from one side.
 std::optional<Limit> richardson(const std::array<double, 3>& sizes, const std::array<double, 3>& values);
 
+/// Why three values have no limit, or "" where richardson() finds one.
+std::string why_no_limit(const std::array<double, 3>& sizes, const std::array<double, 3>& values);
+
+/// A measure that stays without errors in the rows with some values of the other variables.
+struct NoLimit {
+  std::string measure, others, why;
+};
+
 /// Fills the errors of extrapolated measures: for rows that agree in all other variables, the limit of the last three
-/// that have a value. The variable counts as a size where it falls, as a number of parts where it rises. Rows for which
-/// there is no limit stay without an error.
-void extrapolate(const Study& study, Table& table);
+/// that have a value. The variable counts as a size where it falls, as a number of parts where it rises. Variables that
+/// are refined along with it, so that each of their values goes with one of its own, divide no rows. Returns where
+/// there is no limit.
+std::vector<NoLimit> extrapolate(const Study& study, Table& table);
 
 }  // namespace msml

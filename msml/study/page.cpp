@@ -11,6 +11,7 @@
 #include <set>
 
 #include "msml/study/costs.hpp"
+#include "msml/study/extrapolate.hpp"
 #include "msml/study/readings.hpp"
 
 namespace msml {
@@ -32,6 +33,7 @@ class Writer {
       for (const Block& block : part) add(block);
     if (study_.combine == Combine::latin_hypercube) spread();
     sharing();
+    without_limit();
     failures();
     heading("All runs");
     Cells cells{{table_.columns.begin(), table_.columns.end() - 2}};
@@ -97,6 +99,19 @@ class Writer {
         fmt::format("Median over the runs, by the clock: {} s with sharing on, {} s with sharing off, where every "
                     "run was made once more and computed all of its nodes itself: {:.2f} times.",
                     digits(on), digits(off), off / on));
+  }
+
+  /// Where cells of errors against an extrapolated limit stay empty, and why.
+  void without_limit() {
+    Cells cells{{"measure", "of the runs with", "why"}};
+    Table copy = table_;
+    for (const NoLimit& each : extrapolate(study_, copy))
+      cells.push_back({each.measure, each.others.empty() ? "all" : each.others, each.why});
+    if (cells.size() == 1) return;
+    heading("Errors without a limit");
+    paragraph(
+        fmt::format("No limit over {} was found for these, so their errors stay empty.", study_.truth->extrapolate));
+    table(std::move(cells));
   }
 
   void failures() {

@@ -63,6 +63,19 @@ const char* status_of(const Error& error) {
   }
 }
 
+/// A run whose node noted that it ended for want of memory.
+bool ran_out_of_memory(const RunResult& result) {
+  for (const NodeReport& node : result.nodes) {
+    if (node.status != NodeStatus::failed) continue;
+    if (node.facts.contains("ended")) return true;
+    const auto check = node.facts.find("check");
+    if (check == node.facts.end()) continue;
+    const auto json = nlohmann::json::parse(check->second, nullptr, false);
+    if (json.is_object() && json.value("ended", "") == "out of memory") return true;
+  }
+  return false;
+}
+
 std::string warnings_of(const RunResult& result) {
   std::string text;
   for (const NodeReport& node : result.nodes)
@@ -126,7 +139,11 @@ class Runner {
         row.status = std::string(error.what()).starts_with(reference_failed) ? "no reference" : status_of(error);
         row.reason = error.str();
         told.beyond_limit = error.failure() == Failure::interrupted;
+      } catch (const std::bad_alloc&) {
+        row.no_memory = true;
+        row.reason = "not enough memory to measure the run";
       }
+      if (row.no_memory) row.status = "out of memory";
     }
     told.cells = cells(run, row);
     return told;
@@ -141,6 +158,7 @@ class Runner {
   struct Row {
     std::string status, reason, warnings, recovered;
     std::optional<double> unknowns;
+    bool no_memory = false;
     int passes = 0;                            ///< that were measured
     std::vector<std::vector<double>> samples;  ///< per measure, one per pass
   };
@@ -162,6 +180,7 @@ class Runner {
       row.unknowns = unknowns({*run.scene, result, shelf});
       row.warnings = warnings_of(result);
       row.recovered = recoveries_of(result);
+      row.no_memory = ran_out_of_memory(result);
       if (!result.errors.empty()) throw result.errors.front();
       const Finished finished{*run.scene, result, shelf, study_.measures_apart() ? apart(run, folder) : 0};
       spent += finished.apart_seconds;

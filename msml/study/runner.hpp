@@ -33,8 +33,8 @@ std::vector<std::string> study_columns(const Study& study);
 using RowSink = std::function<void(const Table& table, std::size_t row)>;
 
 /// Runs what `known` does not hold yet, which a stopped study left behind, and returns all rows in order. A run that
-/// does not end well is a row with its status: refused, "not converged", limit, "no reference" or failed, and the
-/// reason. Writes results.csv in the folder after each run.
+/// does not end well is a row with its status: refused, "not converged", "out of memory", limit, "no reference" or
+/// failed, and the reason. Writes results.csv in the folder after each run.
 Table run_study(const Study& study, const std::vector<StudyRun>& runs, const Registry& registry,
                 const StudyOptions& options, const Table& known, const RowSink& sink, Sharing& sharing);
 

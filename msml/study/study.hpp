@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,6 +91,7 @@ struct Study {
   std::optional<Truth> truth;
   std::vector<Measure> measures;
   std::vector<Chart> charts;
+  std::set<std::string> unread;  ///< kinds of tags of which some had faults and are missing: "vary", "measure", …
   Location where;
   /// Names of the variables, in the order of the columns.
   std::vector<std::string> variables() const;
@@ -105,8 +107,9 @@ void add_study_tags(Registry& registry);
 /// Told of each fault.
 using FaultSink = std::function<void(const Location&, const std::string&)>;
 
-/// The study that a record of <study> describes; what makes no sense is told to `fault`.
-Study make_study(const Record& record, const FaultSink& fault);
+/// The study that a record of <study> describes; what makes no sense is told to `fault` and left out. `unread`: kinds
+/// of tags of which some have been left out already.
+Study make_study(const Record& record, const FaultSink& fault, std::set<std::string> unread = {});
 
 /// "a=1 b=2", or "a=1 2; b=3" where values hold blanks. A part without '=' is told to `fault`.
 Settings parse_settings(const std::string& text, const Location& where, const FaultSink& fault);

@@ -41,10 +41,10 @@ TEST(StudyLanguage, NamesThatDoNotExistAreFoundAtTheirLine) {
             "s.xml:4: the scene has no variable hh (did you mean 'h'?)");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure value=\"n\"/>"),
             "s.xml:5: measure 'n': the scene has no task or output n");
-  EXPECT_EQ(
-      study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure time=\"tota\"/>"),
-      "s.xml:5: time = tota is none of run, apart, total, own, simulation, step, setup, assembly, linear, and no task has this id "
-      "(did you mean 'total'?)");
+  EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/>\n<measure time=\"tota\"/>"),
+            "s.xml:5: time = tota is none of run, apart, total, own, simulation, step, setup, assembly, linear, and no "
+            "task has this id "
+            "(did you mean 'total'?)");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><measure value=\"m\"/>\n<chart x=\"h\" y=\"mm\"/>"),
             "s.xml:5: y = mm is no column of the study (did you mean 'm'?); it has h, m, unknowns");
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1\"/><measure value=\"m\"/>\n"
@@ -79,6 +79,35 @@ TEST(StudyLanguage, WhatMakesNoSenseIsRefusedBeforeAnythingRuns) {
   EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1 2\"/><vary variable=\"kind\" values=\"fast\"/>",
                          "id=\"s\" combine=\"zip\""),
             "s.xml:4: combine = zip: kind has 1 values, but h has 2");
+}
+
+// A wrong attribute, a value that makes no sense, a name that does not exist and a chart of nothing, all in one go;
+// what only follows from another fault is not told.
+TEST(StudyLanguage, AllFaultsComeInOneRound) {
+  EXPECT_EQ(study_faults("<vary variable=\"h\" values=\"1 2\"/>\n<vary variable=\"hh\" values=\"1\"/>\n"
+                         "<measure value=\"m\" relativ=\"true\"/>\n<measure/>\n<measure id=\"w\" value=\"wrong\"/>\n"
+                         "<chart x=\"h\" y=\"m\"/>\n<chart x=\"h\" y=\"w\" group=\"kind\"/>",
+                         "id=\"a b\" limit=\"-1\""),
+            "s.xml:3: limit = -1 is not > 0\n"
+            "s.xml:3: id = 'a b' names a folder: no blanks, dots, slashes, quotes, braces or *\n"
+            "s.xml:5: the scene has no variable hh (did you mean 'h'?)\n"
+            "s.xml:6: measure has no attribute relativ (did you mean 'relative'?)\n"
+            "s.xml:7: measure needs one of error, time, memory, iterations, probe, value, energy\n"
+            "s.xml:8: measure 'w': the scene has no task or output wrong\n"
+            "s.xml:10: group = kind is no variable of the study; it has h, hh");
+}
+
+TEST(StudyLanguage, ALimitIsLookedForAlongOneVariableAmongOthers) {
+  const std::string measure = "<measure value=\"m\" error=\"RMS\"/>";
+  EXPECT_EQ(
+      study_faults("<vary variable=\"h kind\" values=\"1 a; 2 a; 4 a\"/>\n<reference extrapolate=\"h\"/>" + measure),
+      "");
+  EXPECT_EQ(
+      study_faults("<vary variable=\"h kind\" values=\"1 a; 2 a; 2 b\"/>\n<reference extrapolate=\"h\"/>" + measure),
+      "s.xml:5: extrapolate = h: no <vary> gives this variable three values or more");
+  EXPECT_EQ(study_faults("<vary variable=\"h\" from=\"1\" to=\"2\"/>\n<reference extrapolate=\"h\"/>" + measure,
+                         "id=\"s\" combine=\"latinHypercube\""),
+            "s.xml:5: extrapolate needs values from coarse to fine, but combine = latinHypercube draws them");
 }
 
 TEST(StudyLanguage, TagsAndAttributesAreCheckedAsAllOthers) {

@@ -74,6 +74,16 @@ TEST(Expand, ALatinHypercubeHasOneSampleInEachPartOfEachRange) {
   EXPECT_NE(expand(study, no_fault), runs);
 }
 
+TEST(Expand, RoundedValuesAreNotRunTwice) {
+  Vary vary{.variables = {"n"}, .values = {}, .from = 1, .to = 4, .ranged = true, .whole = true, .where = {}};
+  EXPECT_EQ(range_values(vary, 10), (std::vector<std::vector<std::string>>{{"1"}, {"2"}, {"3"}, {"4"}}));
+  Study study;
+  study.combine = Combine::latin_hypercube;
+  study.samples = 50;
+  study.vary = {vary};
+  EXPECT_EQ(expand(study, [](const Location&, const std::string&) {}).size(), 4U);
+}
+
 TEST(Expand, SettingsAreTakenApart) {
   EXPECT_EQ(parse_settings("a=1 b=x", {}, no_fault), (Settings{{"a", "1"}, {"b", "x"}}));
   EXPECT_EQ(parse_settings("a = 1 2; b=x", {}, no_fault), (Settings{{"a", "1 2"}, {"b", "x"}}));

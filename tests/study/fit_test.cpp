@@ -64,6 +64,15 @@ TEST(Richardson, HasNoLimitForValuesThatSwing) {
   EXPECT_FALSE(richardson({1, 0.5, 0.25}, {1, 2, 3})) << "steps that do not shrink";
 }
 
+TEST(Richardson, SaysWhyThereIsNoLimit) {
+  EXPECT_EQ(why_no_limit({4, 2, 1}, {1.16, 1.04, 1.01}), "");
+  EXPECT_NE(why_no_limit({4, 2, 1}, {1, 2, 1}).find("swing about"), std::string::npos);
+  EXPECT_NE(why_no_limit({4, 2, 1}, {1, 2, 3}).find("do not come closer"), std::string::npos);
+  EXPECT_NE(why_no_limit({4, 2, 1}, {1, 2, 2}).find("two that are equal"), std::string::npos);
+  EXPECT_NE(why_no_limit({4, 4, 1}, {1, 2, 2}).find("from coarse to fine"), std::string::npos);
+  EXPECT_NE(why_no_limit({4, 2, 1}, {1e9, 1, 0}).find("faster than any order"), std::string::npos);
+}
+
 TEST(Table, SurvivesItsCsv) {
   const Table table{{"a", "note"}, {{"1", "plain"}, {"2.5", "a \"word\", a comma\nand a line"}}};
   const Table again = parse_csv(to_csv(table), "t.csv");

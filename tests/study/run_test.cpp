@@ -6,9 +6,12 @@
 
 #include <chrono>
 #include <fstream>
+#include <new>
 #include <set>
 #include <thread>
 
+#include "msml/study/extrapolate.hpp"
+#include "msml/study/page.hpp"
 #include "msml/study/runner.hpp"
 #include "tests/commands/real_language.hpp"
 #include "tests/study/bar.hpp"
@@ -104,6 +107,82 @@ TEST(StudyRun, ErrorsAreTakenAgainstTheLimitOfFinerSettings) {
     EXPECT_NEAR(ran.table.number(row, "tip"), std::abs(value(row) - limit) / std::abs(limit), 1e-7);  // ten digits
   EXPECT_GT(ran.table.number(0, "tip"), ran.table.number(1, "tip"));
   EXPECT_EQ(run(study, folder, ran.table).table.rows, ran.table.rows) << "rows of an earlier session";
+}
+
+TEST(StudyRun, EachSettingOfTheOtherVariablesHasItsLimit) {
+  const tiny::Folder folder;
+  // parts is refined along with n; E divides the runs: the tip sinks by rho g L^2 / (2 E), 0.08 and 0.04.
+  const Ran ran = run(R"(<study id="s"> <vary variable="E" values="1000 2000"/>
+    <vary variable="n parts" values="2 1; 4 2; 8 3"/> <reference extrapolate="n"/>
+    <measure id="tip" probe="tip" component="z" error="RMS"/></study>)",
+                      folder);
+  for (std::size_t row = 0; row < 6; ++row) {
+    const double exact = row < 3 ? -0.08 : -0.04, value = ran.table.number(row, "tip_value");
+    // The limit meets the exact value to a fourth of the last step, 0.3 %.
+    EXPECT_NEAR(ran.table.number(row, "tip"), std::abs(value - exact) / std::abs(exact), 3e-3) << row;
+  }
+  EXPECT_LT(ran.table.number(5, "tip"), ran.table.number(3, "tip"));
+}
+
+TEST(StudyRun, AMissingLimitIsExplained) {
+  const tiny::Folder folder;
+  // The exact elements give the same number on each mesh: no two differ, so nothing approaches anything.
+  Ran ran = run(R"(<study id="s"> <vary variable="kind" values="tet4 tet10"/> <vary variable="n" values="2 4 8"/>
+    <reference extrapolate="n"/> <measure id="tip" probe="tip" component="z" error="RMS"/></study>)",
+                folder);
+  EXPECT_GT(ran.table.number(0, "tip"), 0);
+  Study study;
+  study.vary = {{.variables = {"kind"}, .values = {}, .where = {}}, {.variables = {"n"}, .values = {}, .where = {}}};
+  study.truth = Truth{.set = {}, .file = "", .expected = {}, .extrapolate = "n", .where = {}};
+  study.measures = {{.id = "tip", .against_truth = true, .extrapolated = true, .where = {}}};
+  for (std::size_t row = 3; row < 6; ++row)
+    ran.table.rows[row][static_cast<std::size_t>(ran.table.find("tip_value"))] = "1";
+  const auto without = extrapolate(study, ran.table);
+  ASSERT_EQ(without.size(), 1U);
+  EXPECT_EQ(without[0].others, "tet10");
+  EXPECT_THAT(without[0].why, ::testing::HasSubstr("end with two that are equal"));
+  bool told = false;
+  for (const Block& block : make_page(study, ran.table, ""))
+    for (const auto& row : block.cells) told = told || row.back() == without[0].why;
+  EXPECT_TRUE(told) << "on the page too";
+}
+
+/// The language with a task that finds no memory for 2.
+const Registry& hungry_language() {
+  static const Registry registry = [] {
+    Registry all;
+    add_grammar(all);
+    add_operators(all);
+    Operator op("Hungry", "A task that finds no memory for 2.");
+    const auto number = op.parameter<Integer>("number", {.doc = "of bites"});
+    const auto result = op.output<double>("result", "the number");
+    op.run([=](Context& c) {
+      if (c.get(number) == 2) throw std::bad_alloc();
+      c.set(result, static_cast<double>(c.get(number)));
+    });
+    all.add(std::move(op));
+    return all;
+  }();
+  return registry;
+}
+
+TEST(StudyRun, WantOfMemoryIsAStatusOfItsOwn) {
+  const tiny::Folder folder;
+  const Registry& language = hungry_language();
+  std::vector<Fault> faults;
+  const Document document = parse_document(
+      R"(<msml><variables><var name="n" value="1"/></variables><workflow><Hungry id="eats" number="${n}"/></workflow>
+      <studies><study id="s"><vary variable="n" values="1 2"/><measure value="eats"/></study></studies></msml>)",
+      (folder.path() / "s.xml").string(), faults);
+  const Compilation compilation = compile(document, language);
+  ASSERT_EQ(tiny::lines(compilation.faults), "");
+  Sharing sharing;
+  const Table table = run_study(
+      compilation.studies.at(0), prepare_runs(document, language, {}, compilation.studies.at(0)), language,
+      {.folder = folder.path() / "out"}, {}, [](const Table&, std::size_t) {}, sharing);
+  EXPECT_EQ(table.text(0, "status"), "done") << table.text(0, "reason");
+  EXPECT_EQ(table.text(1, "status"), "out of memory");
+  EXPECT_THAT(table.text(1, "reason"), ::testing::HasSubstr("not enough memory"));
 }
 
 TEST(StudyRun, WhatDoesNotVaryIsComputedOnce) {
