@@ -96,8 +96,19 @@ struct CommandLine {
     studies->add_flag("--keep", study.keep, "keep the files of the runs");
     studies->add_flag("--no-sharing", study.no_sharing, "compute every node of every run, to see what sharing saves");
     charts->add_option("table", chart.table, "results.csv of a study")->required();
-    charts->add_option("--x", chart.x, "column along the horizontal axis")->required();
-    charts->add_option("--y", chart.y, "column along the vertical axis")->required();
+    charts->add_option("--chart", chart.chart,
+                       "id of a chart of the study: drawn again with the choices below (default: all of its charts, or "
+                       "a new one where --x and --y name its columns)");
+    charts->add_option("--x", chart.x, "column along the horizontal axis");
+    charts->add_option("--y", chart.y, "column along the vertical axis");
+    charts->add_option("--color", chart.color, "makes a map of two variables: the error that colours its cells");
+    charts->add_option("--accurate", chart.accurate, "of a map: errors up to this are accurate")
+        ->check(CLI::PositiveNumber);
+    charts->add_option("--wrong", chart.wrong, "of a map: errors above this are wrong results")
+        ->check(CLI::PositiveNumber);
+    charts->add_option("--theory", chart.theory, "y as a formula in X, a line to draw (may be repeated)")
+        ->allow_extra_args(false);
+    charts->add_option("--limit", chart.limits, "value of x to be marked (may be repeated)")->allow_extra_args(false);
     charts->add_option("--group", chart.group, "column whose values make the curves (may be repeated)")
         ->allow_extra_args(false);
     charts->add_option("--only", chart.only, "name=value: draw these rows only (may be repeated)")
@@ -107,7 +118,7 @@ struct CommandLine {
     charts->add_option("--slope", chart.slopes, "slope to draw as a triangle (may be repeated)")
         ->allow_extra_args(false);
     charts->add_option("--title", chart.title, "above the chart");
-    charts->add_option("-o,--output", chart.output, "file without ending (default: Y_over_X beside the table)");
+    charts->add_option("-o,--output", chart.output, "file without ending (default: the chart's id beside the table)");
   }
 
   void add_other_options() {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// study: runs, tables, charts, pages. chart: one more picture of a table.
+// study: runs, tables, charts, pages.
 #include "msml/commands/study.hpp"
 
 #include <fmt/format.h>
@@ -48,16 +48,24 @@ void print_row(const Study& study, const Table& table, std::size_t row) {
 
 Table earlier(const fs::path& file, bool fresh) { return fresh || !fs::exists(file) ? Table{} : read_csv(file); }
 
-void draw_charts(const Study& study, const Table& table, const Compilation& scene, const fs::path& folder) {
-  ChartStyle style{column_labels(study, table, scene), study.combine != Combine::latin_hypercube};
+/// Draws the charts; what went wrong, by the chart's id. A picture of an earlier session does not stay in its place.
+ChartProblems draw_charts(const Study& study, const Table& table, const Compilation& scene, const fs::path& folder) {
+  const ChartStyle style{column_labels(study, table, scene), study.combine != Combine::latin_hypercube};
+  ChartProblems problems;
   for (const Chart& chart : study.charts) {
+    std::string problem;
     try {
-      if (const std::string problem = draw(table, chart, style, folder); !problem.empty())
-        std::fprintf(stderr, "%s\n", problem.c_str());
+      problem = draw(table, chart, style, folder);
     } catch (const Error& error) {
-      std::fprintf(stderr, "%s: %s\n", chart.where.str().c_str(), error.what());
+      problem = error.what();
     }
+    if (problem.empty()) continue;
+    std::fprintf(stderr, "%s: chart '%s': %s\n", chart.where.str().c_str(), chart.id.c_str(), problem.c_str());
+    problems[chart.id] = problem;
+    std::error_code ignored;
+    for (const char* ending : {".svg", ".png"}) fs::remove(folder / (chart.id + ending), ignored);
   }
+  return problems;
 }
 
 /// Errors that stay empty for want of a limit.
@@ -121,8 +129,8 @@ class StudyRunner {
                           .sharing = sharing,
                           .seconds = seconds};
     write_whole(options.folder / "results.json", study_json(study, table, session));
-    draw_charts(study, table, compilation_, options.folder);
-    write_page(study, table, options, sharing, seconds);
+    const ChartProblems problems = draw_charts(study, table, compilation_, options.folder);
+    write_page(study, table, options, sharing, seconds, problems);
     if (!arguments_.scene.quiet)
       std::fprintf(stderr, "study %s: %s, %zu nodes computed, %zu taken from other runs; see %s\n", study.id.c_str(),
                    duration(seconds).c_str(), sharing.computed, sharing.shared,
@@ -161,14 +169,14 @@ class StudyRunner {
   }
 
   void write_page(const Study& study, const Table& table, const StudyOptions& options, const Sharing& sharing,
-                  double seconds) const {
+                  double seconds, const ChartProblems& problems) const {
     const std::string about = fmt::format(
         "Made by msml {} from {}, on {}, {} thread{}, {} at once.{} This session took {}: {} nodes were computed, {} "
         "results taken from other runs{}.",
         MSML_VERSION, fs::path(arguments_.scene.scene).filename().string(), machine(), options.threads,
         options.threads == 1 ? "" : "s", study.alone() ? "one run" : fmt::format("{} runs", options.jobs),
         timing(study), duration(seconds), sharing.computed, sharing.shared, options.share ? "" : " (sharing is off)");
-    const Page page = make_page(study, table, about);
+    const Page page = make_page(study, table, about, problems);
     write_whole(options.folder / "page.md", to_markdown(page));
     if (arguments_.html) write_whole(options.folder / "page.html", to_html(page, options.folder));
   }
@@ -185,34 +193,6 @@ class StudyRunner {
 
 int study_command(const Registry& registry, const StudyArguments& arguments) {
   return StudyRunner(registry, arguments).run();
-}
-
-int chart_command(const ChartArguments& arguments) {
-  const Table table = read_csv(arguments.table);
-  const auto check = [&](const std::string& column) {
-    if (table.find(column) < 0)
-      throw Error(fmt::format("{} has no column {}{}", arguments.table, column, did_you_mean(column, table.columns)));
-  };
-  check(arguments.x);
-  if (arguments.y != share_column) check(arguments.y);
-  Settings only;
-  for (const auto& [name, value] : settings(arguments.only)) check(name), only.emplace_back(name, value);
-  for (const std::string& column : arguments.group) check(column);
-  const fs::path output = arguments.output.empty()
-                              ? fs::path(arguments.table).parent_path() / (arguments.y + "_over_" + arguments.x)
-                              : fs::path(arguments.output);
-  const std::string& s = arguments.scale;
-  const Chart chart{.id = output.filename().replace_extension().string(),
-                    .title = arguments.title,
-                    .x = arguments.x,
-                    .y = arguments.y,
-                    .group = arguments.group,
-                    .only = only,
-                    .axes = {s == "loglog" || s == "logx", s == "loglog" || s == "logy"},
-                    .slopes = arguments.slopes,
-                    .where = {}};
-  if (const std::string problem = draw(table, chart, {}, output.parent_path()); !problem.empty()) throw Error(problem);
-  return 0;
 }
 
 }  // namespace msml

@@ -17,15 +17,18 @@ struct StudyArguments {
 /// without a result does not make the command fail: it is a row of the table.
 int study_command(const Registry& registry, const StudyArguments& arguments);
 
-/// What stands on the command line of chart.
+/// What stands on the command line of chart: what is not given is as the saved chart has it.
 struct ChartArguments {
   std::string table;  ///< results.csv
-  std::string x, y, scale = "loglog", title, output;
-  std::vector<std::string> group, only;  ///< only: "name=value"
-  std::vector<double> slopes;
+  std::string chart;  ///< id of a chart of the study; "": all of them, or a new one of x and y
+  std::string x, y, scale, title, output, color;
+  std::vector<std::string> group, only, theory;  ///< only: "name=value"; theory: formulas in X
+  std::vector<double> slopes, limits;
+  double accurate = 0, wrong = 0;
 };
 
-/// Draws one chart of a table. 0.
+/// Draws charts of a table, with the labels and units that results.json beside it keeps. 0, or 2 after all faults have
+/// been told.
 int chart_command(const ChartArguments& arguments);
 
 }  // namespace msml

@@ -25,7 +25,7 @@ constexpr std::array<int, 8> marks{7, 5, 9, 11, 13, 6, 4, 8};
 class Drawing {
  public:
   Drawing(const Table& table, const Chart& chart, const ChartStyle& style)
-      : table_(filtered(table, chart.only)), chart_(chart), style_(style) {
+      : names_(distinct(table, chart.group)), table_(filtered(table, chart.only)), chart_(chart), style_(style) {
     name_positions();
     if (chart_.y == share_column) add_shares();
     const bool log = chart_.axes.log_x || chart_.axes.log_y;
@@ -153,16 +153,15 @@ class Drawing {
 
   /// Bars first, so that the marks lie on them.
   std::string plot(std::size_t i) const {
-    const char* colour = colours[i % colours.size()];
     const bool joined = style_.joined && curves_[i].points.size() > 1;
     std::string text;
     for (const auto& [column, bars] :
          {std::pair{chart_.x, "1:2:3:4 with xerrorbars"}, std::pair{chart_.y, "1:2:5:6 with yerrorbars"}})
       if (has_bars(column))
-        text += fmt::format("$curve{} using {} lw 1.5 pt 0 lc rgb \"{}\" notitle, \\\n     ", i, bars, colour);
+        text += fmt::format("$curve{} using {} lw 1.5 pt 0 lc rgb \"{}\" notitle, \\\n     ", i, bars, colour(i));
     return text + fmt::format("$curve{} using 1:2 with {} lw 2 dt {} pt {} ps 1.1 lc rgb \"{}\" notitle", i,
-                              joined ? "linespoints" : "points", i / colours.size() + 1, marks[i % marks.size()],
-                              colour);
+                              joined ? "linespoints" : "points", look(i) / colours.size() + 1,
+                              marks[look(i) % marks.size()], colour(i));
   }
 
   /// Names on the right, moved apart where they would overlap, with a thin line to a curve that ends inside.
@@ -184,13 +183,12 @@ class Drawing {
       const Point& last = curves_[i].points.back();
       const double bar = has_bars(chart_.x) ? table_.number(last.row, chart_.x + "_high") : last.x;
       const double end = x_.share(std::isfinite(bar) ? std::max(bar, last.x) : last.x);
-      const char* colour = colours[i % colours.size()];
       if (end < 0.9)
         text +=
             fmt::format("set arrow from graph {:.4f},{:.4f} to graph 1.01,{:.4f} nohead dt 3 lw 1.2 lc rgb \"{}\"\n",
-                        end + 0.015, y_.share(last.y), y, colour);
+                        end + 0.015, y_.share(last.y), y, colour(i));
       text += fmt::format("set label {} at graph 1.015, graph {:.4f} left noenhanced tc rgb \"{}\"\n",
-                          quoted(curves_[i].name), y, colour);
+                          quoted(curves_[i].name), y, colour(i));
     }
     return text;
   }
@@ -238,6 +236,14 @@ class Drawing {
                         points.empty() ? "" : "× ", count, count == 1 ? "" : "s");
   }
 
+  /// The place of a curve among all of the table, drawn here or not: it decides colour, mark and dashes, so that a
+  /// method looks the same in each chart.
+  std::size_t look(std::size_t curve) const {
+    return static_cast<std::size_t>(std::find(names_.begin(), names_.end(), curves_[curve].name) - names_.begin());
+  }
+  const char* colour(std::size_t curve) const { return colours[look(curve) % colours.size()]; }
+
+  std::vector<std::string> names_;
   Table table_;
   Chart chart_;
   const ChartStyle& style_;

@@ -25,10 +25,16 @@ class Writer {
  public:
   Writer(const Study& study, const Table& table) : study_(study), table_(table) {}
 
-  Page write(const std::string& about) {
+  Page write(const std::string& about, const ChartProblems& problems) {
     heading(study_.title.empty() ? study_.id : study_.title);
     paragraph(about + " " + outcome());
-    for (const Chart& chart : study_.charts) add({Block::Kind::picture, chart.id, {}});
+    for (const Chart& chart : study_.charts) {
+      const auto problem = problems.find(chart.id);
+      if (problem == problems.end())
+        add({Block::Kind::picture, chart.id, {}});
+      else
+        paragraph(fmt::format("Chart {} is not drawn: {}", chart.id, problem->second));
+    }
     for (const Page& part : {slope_blocks(study_, table_), passing_blocks(study_, table_), cost_blocks(study_, table_)})
       for (const Block& block : part) add(block);
     if (study_.combine == Combine::latin_hypercube) spread();
@@ -134,8 +140,8 @@ class Writer {
 
 }  // namespace
 
-Page make_page(const Study& study, const Table& table, const std::string& about) {
-  return Writer(study, table).write(about);
+Page make_page(const Study& study, const Table& table, const std::string& about, const ChartProblems& problems) {
+  return Writer(study, table).write(about, problems);
 }
 
 }  // namespace msml

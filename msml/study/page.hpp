@@ -2,6 +2,7 @@
 // The page of a study: the same blocks as Markdown and as one HTML file.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,12 @@ struct Block {
 };
 using Page = std::vector<Block>;
 
+/// Why charts could not be drawn, by their ids: the page says so in their place.
+using ChartProblems = std::map<std::string, std::string>;
+
 /// What a table says about a study: slopes of the curves with their confidence, the Pareto front of error against time,
 /// what 10 %, 5 %, 1 % and 0.1 % cost, ratios at the same error, the spread of samples, what went wrong, all rows.
-Page make_page(const Study& study, const Table& table, const std::string& about);
+Page make_page(const Study& study, const Table& table, const std::string& about, const ChartProblems& problems = {});
 
 std::string to_markdown(const Page& page);
 /// Pictures are the SVG files of the folder, put into the text.

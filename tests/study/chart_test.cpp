@@ -56,6 +56,16 @@ TEST(Chart, NamesItsCurvesAndMarksWhatFailed) {
   EXPECT_THAT(script, Not(HasSubstr("errorbars")));
 }
 
+// tet10 is the second of the table: it has the second colour and mark where it is drawn alone, too.
+TEST(Chart, AMethodLooksTheSameInEachChart) {
+  Chart chart = study().charts[0];
+  EXPECT_THAT(gnuplot_script(convergence(), chart, {}),
+              HasSubstr("$curve1 using 1:2 with linespoints lw 2 dt 1 pt 5 ps 1.1 lc rgb \"#D55E00\""));
+  chart.only = {{"kind", "tet10"}};
+  EXPECT_THAT(gnuplot_script(convergence(), chart, {}),
+              HasSubstr("$curve0 using 1:2 with linespoints lw 2 dt 1 pt 5 ps 1.1 lc rgb \"#D55E00\""));
+}
+
 TEST(Chart, TimesHaveErrorBars) {
   Chart chart = study().charts[0];
   chart.x = "time";
@@ -192,6 +202,12 @@ TEST(Page, FitsTheFinerHalfToo) {
   Study along = study();
   along.charts[0].x = "n";
   EXPECT_THAT(to_markdown(make_page(along, table, "")), HasSubstr("| 5 | -2.00 | ± 0.00 | 3 |"));
+}
+
+TEST(Page, SaysWhyAChartIsMissing) {
+  const Page page = make_page(study(), convergence(), "", {{"c", "no run has numbers"}});
+  EXPECT_THAT(to_markdown(page), HasSubstr("Chart c is not drawn: no run has numbers"));
+  EXPECT_THAT(to_markdown(page), Not(HasSubstr("c.svg")));
 }
 
 TEST(Page, IsOneFileOfHtml) {

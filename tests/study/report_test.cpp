@@ -92,6 +92,63 @@ TEST(StudyRecord, TimesOfOtherThreadsAreTakenAnew) {
   EXPECT_GT(run(scene, {}, 2)["nodesComputed"], 0);
 }
 
+std::string script(const fs::path& folder, const std::string& id) { return content(folder / (id + ".gp")); }
+
+constexpr const char* charted =
+    R"(<study id="s"> <vary variable="n" values="1 2"/> <vary variable="E" values="1000 2000"/>
+  <reference set="n=3"/> <measure id="error" error="RMS"/>
+  <chart id="map" x="n" y="E" color="error" scale="linear" accurate="0.1" theory="1000*X" limits="1.5"/>
+  <chart id="curve" x="E" y="error" group="n" title="Errors"/></study>)";
+
+TEST(ChartCommand, DrawsTheChartsOfAStudyAgain) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml", out = folder.path() / "out" / "s";
+  write(scene, studies::bar(charted, "mm N s MPa"));
+  run(scene);
+  const std::string map = script(out, "map"), curve = script(out, "curve");
+  EXPECT_NE(map.find("$theory0"), std::string::npos);
+  EXPECT_NE(curve.find("E [MPa]"), std::string::npos);
+  for (const char* id : {"map.gp", "curve.gp"}) fs::remove(out / id);
+  chart_command({.table = (out / "results.csv").string()});
+  EXPECT_EQ(script(out, "map"), map) << "with theory, limits and labels";
+  EXPECT_EQ(script(out, "curve"), curve);
+}
+
+TEST(ChartCommand, ChangesWhatIsAskedAndKeepsTheRest) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml", out = folder.path() / "out" / "s";
+  write(scene, studies::bar(charted, "mm N s MPa"));
+  run(scene);
+  chart_command({.table = (out / "results.csv").string(),
+                 .chart = "curve",
+                 .output = (out / "other").string(),
+                 .theory = {"1/X"}});
+  EXPECT_NE(script(out, "other").find("$theory0"), std::string::npos);
+  EXPECT_NE(script(out, "other").find("Errors"), std::string::npos) << "its title";
+  EXPECT_NE(script(out, "other").find("E [MPa]"), std::string::npos) << "and its units";
+  chart_command({.table = (out / "results.csv").string(), .x = "n", .y = "E", .scale = "linear", .color = "error"});
+  EXPECT_NE(script(out, "E_over_n").find("set object rectangle"), std::string::npos) << "a map";
+}
+
+TEST(ChartCommand, NamesAllFaultsAtOnce) {
+  const tiny::Folder folder;
+  const fs::path scene = folder.path() / "s.xml", out = folder.path() / "out" / "s";
+  write(scene, studies::bar(charted));
+  run(scene);
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(chart_command({.table = (out / "results.csv").string(),
+                           .x = "nn",
+                           .y = "errr",
+                           .group = {"EE"},
+                           .only = {"n"},
+                           .theory = {"1/("}}),
+            2);
+  const std::string told = ::testing::internal::GetCapturedStderr();
+  for (const char* each : {"no column nn (did you mean 'n'?)", "no column errr (did you mean 'error'?)", "no column EE",
+                           "--only n is not of the form", "--theory 1/("})
+    EXPECT_NE(told.find(each), std::string::npos) << told;
+}
+
 TEST(Units, EveryFieldOfResultsHasOne) {
   const Description* result = real_language().find("result", {"output"});
   ASSERT_NE(result, nullptr);
