@@ -30,13 +30,18 @@ Vector spring_forces(const Run& run) {
 
 void check_balance(const Run& run, const Supports& supports, Check& check) {
   const Forces& f = run.between ? *run.between : run.newton.forces();
-  Vector residual = f.residual();
+  Vector residual = f.residual(), reaction = run.now.reaction;
+  if (run.between) {
+    reaction = supports.slides.removed(residual);
+    for (Eigen::Index k = 0; k < residual.size(); ++k)
+      reaction[k] = -(supports.fixed[static_cast<std::size_t>(k)] ? residual[k] : reaction[k]);
+  }
   supports.slides.project(residual);
-  check.load_scale = std::max(
-      {f.external.norm(), f.internal.norm(), f.inertia.norm(), run.now.reaction.norm(), spring_forces(run).norm()});
+  check.load_scale =
+      std::max({f.external.norm(), f.internal.norm(), f.inertia.norm(), reaction.norm(), spring_forces(run).norm()});
   if (check.load_scale > 0) check.residual = free_norm(residual, supports.fixed) / check.load_scale;
   check.sum_loads = sum(f.external);
-  check.sum_reactions = sum(run.now.reaction);
+  check.sum_reactions = sum(reaction);
   // Springs to points in space hold from outside: what they give is all that internal forces sum to.
   if (!run.model.steps[static_cast<std::size_t>(run.now.step)].springs.empty()) check.sum_reactions -= sum(f.internal);
   check.sum_inertia = sum(f.inertia);

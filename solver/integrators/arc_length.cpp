@@ -205,7 +205,7 @@ bool advance(Arc& arc) {
   const double steps = run.model.settings.arc_length.steps;
   run.now.time += arc.path.duration / steps;
   ++run.now.increment;
-  run.set_reactions(run.newton.forces().residual(), arc.path.supports, run.now.time);
+  run.set_reactions(run.newton.forces().residual(), arc.path.supports);
   run.account(before);
   const Vector moved = result.u - before;
   if (run.now.increment > 1 && change * run.piece < 0)

@@ -32,7 +32,7 @@ void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) 
   }
   run.newton.prepare(run.now.u, path.loads(share));
   run.newton.rest();
-  run.set_reactions(run.newton.forces().residual(), path.supports, run.now.time);
+  run.set_reactions(run.newton.forces().residual(), path.supports);
   run.equations.end_step(run.now.u);
   run.account(before);
 }

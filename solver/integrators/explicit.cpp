@@ -140,7 +140,7 @@ struct Explicit {
         now.v[i] = supports.fixed[static_cast<std::size_t>(i)] ? end[i] : now.v[i] + 0.5 * dt * now.a[i];
     if (!sound(step, before, supports, loads)) return false;
     ++now.increment;
-    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
+    run.set_reactions(run.newton.forces().residual(), supports);
     run.equations.end_step(now.u);
     run.account(before.u);
     return true;
@@ -180,7 +180,7 @@ void run_explicit(Run& run) {
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();
     method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
-    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
+    run.set_reactions(run.newton.forces().residual(), supports);
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (!method.stable(step, supports.fixed, loads, 0)) return;

@@ -143,16 +143,41 @@ double size_of(const Run& run, const Vector& motion) {
   return motion.head(3 * run.equations.numbering().body_nodes()).norm();
 }
 
+/// Where the balance holds between the ends of a step, the method's acceleration belongs to a time tau beside its end:
+/// m tau_1 + (1 - m) tau_0 = t_0 + f h with the shares m of inertia and f of forces, exact where the true one is linear
+/// in time, and tau = t at the first state. The line through the last two leads to the end, to second order.
+void accelerate(Stage& stage, const Trial& trial, const Vector& before, double time) {
+  Run& run = stage.run;
+  const Kinematics& motion = trial.increment.motion;
+  const double m = motion.inertia_share, balanced = run.now.time + motion.force_share * motion.dt;
+  const double tau_0 = run.accelerated, tau_1 = (balanced - (1 - m) * tau_0) / m;
+  run.acceleration_now = run.now.a + (time - tau_1) / (tau_1 - tau_0) * (run.now.a - before);
+  run.accelerated = tau_1;
+  Mask given(stage.supports.fixed.size(), 0);
+  Vector velocity = run.now.v;
+  stage.supports.drive(time, 0, motion.dt, velocity, run.acceleration_now, given);
+  for (std::size_t k = 0; k < given.size(); ++k) {
+    const auto i = static_cast<Eigen::Index>(k);
+    if (stage.supports.fixed[k] && !given[k]) run.acceleration_now[i] = run.now.a[i];
+  }
+}
+
 void keep(Stage& stage, const Trial& trial, double time, const Forces& start_forces) {
   Run& run = stage.run;
-  const Vector before = run.now.u;
+  const Vector before = run.now.u, accelerated_before = run.now.a;
   run.now.u = trial.result.u;
   run.now.v = trial.velocity;
   run.now.a = trial.acceleration;
-  const double balanced = run.now.time + trial.increment.motion.force_share * (time - run.now.time);
+  Vector residual = run.newton.forces().residual();
+  if (blends(trial.increment.motion)) {
+    run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
+    accelerate(stage, trial, accelerated_before, time);
+    Vector inertia;
+    multiply(run.equations.mass(), run.acceleration_now, inertia);
+    residual += run.newton.forces().inertia - inertia;
+  }
   run.now.time = time;
-  run.set_reactions(run.newton.residual(trial.increment), stage.supports, balanced);
-  if (blends(trial.increment.motion)) run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
+  run.set_reactions(residual, stage.supports);
   run.equations.end_step(run.now.u);
   run.account(before);
   if (stage.C_end_current) std::swap(stage.C.values, stage.C_end->values);
@@ -252,7 +277,9 @@ void run_implicit(Run& run) {
     if (s == 0) run.settle_pressures();
     // Loads and supports may jump between steps, and the acceleration with them.
     run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
-    run.set_reactions(run.newton.forces().residual(), supports, run.now.time);
+    run.acceleration_now = {};
+    run.accelerated = run.now.time;
+    run.set_reactions(run.newton.forces().residual(), supports);
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (s == 0 && !run.accept()) return;

@@ -18,7 +18,7 @@ State Run::state() const {
           now.increment,
           to_points(numbering, now.u),
           to_points(numbering, now.v),
-          to_points(numbering, now.a),
+          to_points(numbering, acceleration_now.size() > 0 ? acceleration_now : now.a),
           to_points(numbering, now.reaction),
           now.energies,
           equations.elements().history_stress(),
@@ -142,8 +142,7 @@ bool Run::accept() {
   return false;
 }
 
-void Run::set_reactions(const Vector& residual, const Supports& supports, double time) {
-  reacted = time;
+void Run::set_reactions(const Vector& residual, const Supports& supports) {
   const Vector across = supports.slides.removed(residual);
   for (Eigen::Index k = 0; k < residual.size(); ++k)
     now.reaction[k] = supports.fixed[static_cast<std::size_t>(k)] ? -residual[k] : -across[k];
@@ -153,8 +152,6 @@ void Run::mark() {
   const Forces& forces = newton.forces();
   external_before = forces.external;
   reaction_before = now.reaction;
-  marked = now.time;
-  reacted_before = reacted;
   damping_before = forces.damping;
   if (equations.has_history()) internal_before = forces.internal;
   tangled = forces.found.smallest_J < 0.1;
@@ -171,10 +168,8 @@ void Run::mark() {
 void Run::account(const Vector& u_before) {
   const Forces& forces = newton.forces();
   const Vector moved = now.u - u_before;
-  const double passed = reacted - reacted_before;
-  const double share = passed != 0 ? (0.5 * (marked + now.time) - reacted_before) / passed : 0.5;
-  now.energies.external_work += 0.5 * dot(moved, external_before + forces.external) +
-                                dot(moved, (1 - share) * reaction_before + share * now.reaction);
+  now.energies.external_work +=
+      0.5 * (dot(moved, external_before + forces.external) + dot(moved, reaction_before + now.reaction));
   now.energies.dissipated += 0.5 * dot(moved, damping_before + forces.damping);
   if (!equations.has_history()) return mark();
   const double work = 0.5 * dot(moved, internal_before + forces.internal), stored = now.energies.elastic;

@@ -26,15 +26,15 @@ struct Run {
   const Observer& observer;
   Outcome& outcome;
   Motion now;
-  std::vector<double> residuals = {};  ///< of the increment that failed
-  double reacted = 0;  ///< time that the reactions belong to: within the last step where the balance does
+  std::vector<double> residuals = {};                                      ///< of the increment that failed
   Vector external_before = {}, reaction_before = {}, damping_before = {};  ///< forces at the last mark
-  double marked = 0, reacted_before = 0;                                   ///< times of the last mark
-  Vector internal_before = {};                 ///< internal forces at the last mark, where there is a history
-  double piece = 0;                            ///< adaptive_step: length of the next piece, in time; 0: not known yet
-  int pieces = 0;                              ///< implicit dynamics: time steps taken
-  FreeMotions free = {};                       ///< rigid motions that the supports of the present step leave
-  std::optional<Forces> between = {};          ///< balanced forces, where these are not those at the present time
+  Vector internal_before = {};         ///< internal forces at the last mark, where there is a history
+  double piece = 0;                    ///< adaptive_step: length of the next piece, in time; 0: not known yet
+  int pieces = 0;                      ///< implicit dynamics: time steps taken
+  FreeMotions free = {};               ///< rigid motions that the supports of the present step leave
+  std::optional<Forces> between = {};  ///< balanced forces, where these are not those at the present time
+  Vector acceleration_now = {};        ///< where that of the method, now.a, belongs to another time; empty: it does not
+  double accelerated = 0;              ///< that time
   std::optional<double> energy_at_start = {};  ///< elastic and kinetic, at the first mark
   double most_gained = 0, most_lost = 0;       ///< energy beside that at the start, work and dissipation, at any mark
   double most_energy = 0;                      ///< largest of all of these
@@ -64,11 +64,10 @@ struct Run {
   IncrementResult reach(const Increment& increment);
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
-  /// Reactions that balance a residual at a time.
-  void set_reactions(const Vector& residual, const Supports& supports, double time);
+  /// Reactions that balance a residual.
+  void set_reactions(const Vector& residual, const Supports& supports);
   /// Work and loss from u_before to the present state by the trapezoidal rule, with the forces at the last mark and
-  /// those that Newton evaluated last, after the elements took over the end of the step; with the reactions in the
-  /// middle between both, on the line through the last two times of these. Marks.
+  /// those that Newton evaluated last, after the elements took over the end of the step. Marks.
   void account(const Vector& u_before);
   /// The present forces are those that the next account starts from; energies are measured.
   void mark();
