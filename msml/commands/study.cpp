@@ -60,7 +60,7 @@ ChartProblems draw_charts(const Study& study, const Table& table, const Compilat
       problem = error.what();
     }
     if (problem.empty()) continue;
-    std::fprintf(stderr, "%s: chart '%s': %s\n", chart.where.str().c_str(), chart.id.c_str(), problem.c_str());
+    std::fprintf(stderr, "%s: %s\n", chart.where.str().c_str(), problem.c_str());
     problems[chart.id] = problem;
     std::error_code ignored;
     for (const char* ending : {".svg", ".png"}) fs::remove(folder / (chart.id + ending), ignored);
