@@ -147,7 +147,7 @@ TEST(StudyRun, AMissingLimitIsExplained) {
   EXPECT_TRUE(told) << "on the page too";
 }
 
-/// The language with a task that finds no memory for 2.
+/// The language with a task that finds no memory for 2, and for 3 ends as a simulation whose factor does not fit.
 const Registry& hungry_language() {
   static const Registry registry = [] {
     Registry all;
@@ -158,6 +158,10 @@ const Registry& hungry_language() {
     const auto result = op.output<double>("result", "the number");
     op.run([=](Context& c) {
       if (c.get(number) == 2) throw std::bad_alloc();
+      if (c.get(number) == 3) {
+        c.reporter().record("check", R"({"ended": "out of memory"})");
+        throw Error("the factor does not fit", {}, Failure::not_converged);
+      }
       c.set(result, static_cast<double>(c.get(number)));
     });
     all.add(std::move(op));
@@ -172,7 +176,7 @@ TEST(StudyRun, WantOfMemoryIsAStatusOfItsOwn) {
   std::vector<Fault> faults;
   const Document document = parse_document(
       R"(<msml><variables><var name="n" value="1"/></variables><workflow><Hungry id="eats" number="${n}"/></workflow>
-      <studies><study id="s"><vary variable="n" values="1 2"/><measure value="eats"/></study></studies></msml>)",
+      <studies><study id="s"><vary variable="n" values="1 2 3"/><measure value="eats"/></study></studies></msml>)",
       (folder.path() / "s.xml").string(), faults);
   const Compilation compilation = compile(document, language);
   ASSERT_EQ(tiny::lines(compilation.faults), "");
@@ -183,6 +187,8 @@ TEST(StudyRun, WantOfMemoryIsAStatusOfItsOwn) {
   EXPECT_EQ(table.text(0, "status"), "done") << table.text(0, "reason");
   EXPECT_EQ(table.text(1, "status"), "out of memory");
   EXPECT_THAT(table.text(1, "reason"), ::testing::HasSubstr("not enough memory"));
+  EXPECT_EQ(table.text(2, "status"), "out of memory");
+  EXPECT_THAT(table.text(2, "reason"), ::testing::HasSubstr("the factor does not fit"));
 }
 
 TEST(StudyRun, WhatDoesNotVaryIsComputedOnce) {
