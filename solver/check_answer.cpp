@@ -24,7 +24,8 @@ Vec3 sum(const Vector& v) {
 Vector spring_forces(const Run& run) {
   Vector forces = Vector::Zero(run.equations.size());
   const Equations& equations = run.equations;
-  add_springs(equations.loads(run.now.step).springs, equations.positions(), run.now.u, false, forces, nullptr);
+  add_springs(equations.loads(run.now.step).springs, run.now.time, equations.positions(), run.now.u, false, forces,
+              nullptr);
   return forces;
 }
 

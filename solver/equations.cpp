@@ -49,7 +49,7 @@ Equations::Equations(const Model& model)
   for (const LoadSet& set : loads_) {
     has_followers_ = has_followers_ || !set.followers.empty();
     if (!set.springs.empty()) small_strain_ = false;
-    for (const SpringLink& spring : set.springs) has_dampers_ = has_dampers_ || spring.damping > 0;
+    for (const SpringLink& spring : set.springs) has_dampers_ = has_dampers_ || spring.damping > 0 || spring.damping_at;
   }
 }
 
@@ -72,7 +72,7 @@ void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, F
   for (const ActingLoads& acting : loads)
     if (!acting.leaving)
       forces.found.energy +=
-          add_springs(acting.set->springs, X_, u, want == Want::definite_tangent, forces.internal, tangent);
+          add_springs(acting.set->springs, acting.time, X_, u, want == Want::definite_tangent, forces.internal, tangent);
   evaluate_loads(u, loads, forces, followers);
 }
 

@@ -116,9 +116,10 @@ struct Spring {
   std::string name;
   int first = -1, second = -1;  ///< nodes; second = -1: the other end is `point`
   Vec3 point = Vec3::Zero();
-  double stiffness = 0;  ///< force/length, >= 0
-  double damping = 0;    ///< force time/length, >= 0
-  double rest = 0;       ///< length, >= 0
+  double stiffness = 0;                                           ///< force/length, >= 0
+  double damping = 0;                                             ///< force time/length, >= 0
+  double rest = 0;                                                ///< length, >= 0
+  TimeFunction stiffness_at = {}, damping_at = {}, rest_at = {};  ///< if set, instead of the numbers
 };
 
 /// A mass at a node, beside that of the elements; a node may have no element.

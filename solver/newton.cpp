@@ -59,11 +59,12 @@ void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bo
 
 namespace {
 
-/// The set of springs that act: internal forces and tangent hold theirs.
-const LoadSet* springs_of(const ScaledLoads& loads) {
+/// The springs that act: internal forces and tangent hold theirs.
+ActingSprings springs_of(const ScaledLoads& loads) {
   for (const ActingLoads& acting : loads)
-    if (!acting.leaving && !acting.set->springs.empty()) return acting.set;
-  return nullptr;
+    if (!acting.leaving && !acting.set->springs.empty())
+      return {acting.set, vary(acting.set->springs) ? acting.time : 0};
+  return {};
 }
 
 }  // namespace
@@ -107,7 +108,7 @@ bool Newton::damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C) 
     C.set_zero();
   }
   for (const ActingLoads& acting : loads)
-    if (!acting.leaving) add_dampers(acting.set->springs, equations_.positions(), u, C);
+    if (!acting.leaving) add_dampers(acting.set->springs, acting.time, equations_.positions(), u, C);
   return true;
 }
 

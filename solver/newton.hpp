@@ -38,6 +38,13 @@ struct IncrementResult {
   double walked = 0;  ///< where pieces of the increment were tried: the share that was reached
 };
 
+/// The set whose springs act, and the time where they change with it.
+struct ActingSprings {
+  const LoadSet* set = nullptr;
+  double time = 0;
+  bool operator==(const ActingSprings&) const = default;
+};
+
 /// Work space and statistics of all increments of a run.
 ///
 /// An increment has converged where, with t = Settings::tolerance,
@@ -157,14 +164,14 @@ class Newton {
   std::unique_ptr<BlockMatrix> followers_;     ///< stiffness of the follower pressure; null without
   Forces forces_;
   Want want_;
-  bool tangent_current_ = false;                 ///< tangent_ belongs to the displacement that increments start from
-  const LoadSet* springs_in_tangent_ = nullptr;  ///< the set whose springs it holds
-  bool lifted_ = false;                          ///< the diagonal of the definite tangent is raised
-  bool searching_ = true;                        ///< the line search is on
-  bool energetic_ = true;         ///< forces are derivatives of an energy, which the line search looks at
-  bool barrier_ = false;          ///< a law does not survive inversion
-  bool rigid_free_ = false;       ///< the matrix is singular, as nothing holds the body
-  bool insist_definite_ = false;  ///< the exact tangent led nowhere in the last iteration
+  bool tangent_current_ = false;      ///< tangent_ belongs to the displacement that increments start from
+  ActingSprings springs_in_tangent_;  ///< that it holds
+  bool lifted_ = false;               ///< the diagonal of the definite tangent is raised
+  bool searching_ = true;             ///< the line search is on
+  bool energetic_ = true;             ///< forces are derivatives of an energy, which the line search looks at
+  bool barrier_ = false;              ///< a law does not survive inversion
+  bool rigid_free_ = false;           ///< the matrix is singular, as nothing holds the body
+  bool insist_definite_ = false;      ///< the exact tangent led nowhere in the last iteration
   double last_step_ = 0;  ///< largest entry of the last step before the line search; infinite without the exact tangent
   std::vector<char> survives_;   ///< of each cell: its law survives inversion
   bool definite_taken_ = false;  ///< the last step came from the semidefinite tangent

@@ -119,6 +119,8 @@ double next_stop(const Step& step, double from, double to) {
   look(step.forces);
   look(step.face_loads);
   look(step.body_forces);
+  for (const Spring& spring : step.springs)
+    for (const TimeFunction* each : {&spring.stiffness_at, &spring.damping_at, &spring.rest_at}) meet(each->kinks);
   return next;
 }
 
@@ -150,6 +152,7 @@ void Run::set_reactions(const Vector& residual, const Supports& supports) {
 
 void Run::mark() {
   const Forces& forces = newton.forces();
+  marked = now.time;
   external_before = forces.external;
   reaction_before = now.reaction;
   damping_before = forces.damping;
@@ -170,6 +173,8 @@ void Run::account(const Vector& u_before) {
   const Vector moved = now.u - u_before;
   now.energies.external_work +=
       0.5 * (dot(moved, external_before + forces.external) + dot(moved, reaction_before + now.reaction));
+  now.energies.external_work +=
+      work_on_springs(equations.loads(now.step).springs, equations.positions(), {u_before, now.u, marked, now.time});
   now.energies.dissipated += 0.5 * dot(moved, damping_before + forces.damping);
   if (!equations.has_history()) return mark();
   const double work = 0.5 * dot(moved, internal_before + forces.internal), stored = now.energies.elastic;

@@ -79,8 +79,35 @@ TEST(SpringToPoint, TakesExpressionsInThePlaceOfTheNode) {
   EXPECT_EQ(springs[1].stiffness, 6);
   EXPECT_EQ(springs[1].damping, 2);
   EXPECT_EQ(springs[1].rest, 1.5);
-  attributes["stiffness"] = Formula("5+t");
-  EXPECT_THAT(refusal("springToPoint", attributes), HasSubstr("stiffness = '5+t' depends on t"));
+}
+
+TEST(SpringToPoint, ChangesWithTimeByExpressionsAndATable) {
+  Attributes attributes{{"indices", index_set(nullptr, Indexed::nodes, {0, 2})},
+                        {"point", Numbers{0, 0, 3}},
+                        {"stiffness", Formula("5+X+t")},
+                        {"damping", 2.0},
+                        {"restLength", Formula("1-t/4")}};
+  const fe::Spring plain = build("springToPoint", attributes).steps[0].springs[1];
+  EXPECT_EQ(plain.stiffness_at(2), 8);
+  EXPECT_FALSE(plain.damping_at);
+  EXPECT_EQ(plain.rest_at(2), 0.5);
+  attributes["table"] = Numbers{0, 0, 4, 1};
+  const fe::Spring factor = build("springToPoint", attributes).steps[0].springs[1];
+  EXPECT_EQ(factor.stiffness_at(2), 4);
+  EXPECT_EQ(factor.damping_at(1), 0.5);
+  EXPECT_EQ(factor.rest_at(2), 0.5);
+  EXPECT_EQ(factor.stiffness_at.kinks, (Numbers{0, 4}));
+  attributes["table"] = Numbers{0, 1, 1, -2};
+  EXPECT_THAT(refusal("springToPoint", attributes), HasSubstr("table: the factor -2 is not >= 0"));
+  const auto fixed = build("springMeshToFixed", {{"stiffness", Formula("5+t")},
+                                                 {"rayleighStiffnes", 0.1},
+                                                 {"movingPoints", Numbers{0, 0, 0}},
+                                                 {"fixedPoints", Numbers{0, 0, 2}},
+                                                 {"table", Numbers{0, 0, 4, 1}}})
+                         .steps[0]
+                         .springs[0];
+  EXPECT_EQ(fixed.stiffness_at(2), 3.5);
+  EXPECT_DOUBLE_EQ(fixed.damping_at(2), 0.35);
 }
 
 TEST(SpringMeshToFixed, PullsTheNearestNodesWithoutARestLength) {

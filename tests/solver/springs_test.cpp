@@ -233,5 +233,68 @@ TEST(Springs, HoldABodyWhoseResidualIsMeasuredBesideThem) {
   EXPECT_LT(outcome.check.residual, 1e-8);
 }
 
+// k z = m g with k = 50 (1 + t) and a rest length of 1 - t/4, in equilibrium at each time. What changes the spring does
+// the work int (k'/2 s^2 - k s l_0') dt with the stretch s = m g / k: (m g)^2/2 (1/k_0 - 1/k_1) and m g / 4 for the
+// rest.
+TEST(Springs, ThatChangeWithTimeHoldAWeightAndAreWorkedOn) {
+  double errors[2];
+  for (const int count : {20, 40}) {
+    Model model = pendulum(Integrator::quasi_static, 1.0 / count, count);
+    Spring& spring = model.steps[0].springs[0];
+    spring.stiffness_at = [](double t) { return stiffness * (1 + t); };
+    spring.rest_at = [](double t) { return 1 - t / 4; };
+    State first;
+    const Outcome outcome = solve(model, [&](const State& state) {
+      const double sag = mass * weight / (stiffness * (1 + state.time)) - state.time / 4;
+      if (state.time > 0) EXPECT_NEAR(state.displacement(0, 2), -sag, 1e-10) << state.time;
+      if (state.increment == 1) first = state;
+      return true;
+    });
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    const double t0 = first.time, force = mass * weight;
+    const double lifted = outcome.state.displacement(0, 2) - first.displacement(0, 2);
+    const double on_spring = force * force / (2 * stiffness) * (1 / (1 + t0) - 0.5) + force * (1 - t0) / 4;
+    const double work = outcome.state.energies.external_work - first.energies.external_work;
+    errors[count == 40] = std::abs(work - (on_spring - force * lifted)) / on_spring;
+  }
+  EXPECT_LT(errors[1], 1e-3);
+  EXPECT_LT(errors[1], errors[0] / 3);  // of second order; the first state is nearer to 0 with the shorter step
+}
+
+// One linear solve: m (v_1 - v_0) / dt = -m g - k(t_1) z_1, z_1 = z_0 + dt v_1.
+TEST(Springs, ThatChangeWithTimeAreThoseOfTheEndOfTheStep) {
+  const double dt = 0.1;
+  Model model = pendulum(Integrator::implicit_euler, dt, 30);
+  model.settings.newton_iterations = 1;
+  model.steps[0].springs[0].stiffness_at = [](double t) { return stiffness * (1 + t); };
+  double z = 0, v = 0;
+  solve(model, [&](const State& state) {
+    if (state.increment == 0) return true;
+    const double k = stiffness * (1 + state.time);
+    v = (v - dt * (weight + k / mass * z)) / (1 + k / mass * dt * dt);
+    z += dt * v;
+    EXPECT_NEAR(state.displacement(0, 2), z, 1e-12) << state.time;
+    return true;
+  });
+}
+
+// Newmark's energy is kept but for terms of second order in dt: what changes the spring is part of the work.
+TEST(Springs, ThatChangeWithTimeLeaveTheEnergyBalanced) {
+  double drift[2] = {0, 0};
+  for (const int half : {0, 1}) {
+    Model model = pendulum(Integrator::newmark, 0.01 / (1 + half), 100 * (1 + half));
+    Spring& spring = model.steps[0].springs[0];
+    spring.stiffness_at = [](double t) { return stiffness * (1 + std::sin(3 * t) / 2); };
+    spring.rest_at = [](double t) { return 1 + t / 5; };
+    solve(model, [&](const State& state) {
+      const Energies& e = state.energies;
+      drift[half] = std::max(drift[half], std::abs(e.elastic + e.kinetic - e.external_work));
+      return true;
+    });
+  }
+  EXPECT_LT(drift[0], 0.02 * mass * weight);
+  EXPECT_LT(drift[1], 0.3 * drift[0]);
+}
+
 }  // namespace
 }  // namespace msml::fe

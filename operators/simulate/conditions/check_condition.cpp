@@ -4,7 +4,6 @@
 
 #include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
-#include "operators/simulate/varying_record.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::simulation {
@@ -48,7 +47,6 @@ void check_vectors(const Record& record, CellKind kind, const std::string& attri
 }
 
 void check_spring(const Record& condition) {
-  if (condition.tag().starts_with("spring")) VaryingRecord::check(condition);  // their numbers do not know the time
   const Value *first = value_of(condition, "first"), *second = value_of(condition, "second");
   if (first == nullptr || second == nullptr) return;
   const auto *one = std::get_if<Integer>(first), *two = std::get_if<Integer>(second);

@@ -8,14 +8,19 @@ namespace {
 
 struct SpringKeys {
   Key<Formula> stiffness, damping, rest;
+  Key<std::vector<double>> table;
 };
+
+Key<std::vector<double>> add_spring_table(Description& tag) {
+  return add_table(tag, "the force of the spring and its damper (stiffness and damping); each factor is >= 0");
+}
 
 SpringKeys add_spring(Description& tag) {
   return {
-      tag.parameter<Formula>("stiffness",
-                             {.unit = "force/length",
-                              .range = positive(),
-                              .doc = "tension per length: a number, or an expression in X, Y, Z of its first end"}),
+      tag.parameter<Formula>(
+          "stiffness", {.unit = "force/length",
+                        .range = positive(),
+                        .doc = "tension per length: a number, or an expression in X, Y, Z of its first end and t"}),
       tag.parameter<Formula>(
           "damping", {.unit = "force time/length",
                       .range = nonnegative(),
@@ -26,7 +31,8 @@ SpringKeys add_spring(Description& tag) {
           {.unit = "length",
            .range = nonnegative(),
            .optional = true,
-           .doc = "where it is free of force; absent: the distance in the reference mesh; expressions too"})};
+           .doc = "where it is free of force; absent: the distance in the reference mesh; expressions too"}),
+      add_spring_table(tag)};
 }
 
 Key<std::string> add_step(Description& tag) {
@@ -40,17 +46,41 @@ Vec3 point_of(const std::vector<double>& numbers, std::size_t i = 0) {
 
 double value_at(const Record& record, Key<Formula> key, const Vec3& X) { return function(record, key)(X, 0); }
 
+/// The table of a tag, without negative factors: springs that push the harder the longer they are hold nothing.
+fe::TimeFunction factor_of(const Record& record, Key<std::vector<double>> table) {
+  for (std::size_t i = 1; record.has(table) && i < record[table].size(); i += 2)
+    if (record[table][i] < 0) refuse(record, fmt::format("table: the factor {:g} is not >= 0", record[table][i]));
+  return read_table(record, table);
+}
+
+/// The number of a spring at X as time goes on; empty where it stays.
+fe::TimeFunction in_time(const Function& number, const Vec3& X, const fe::TimeFunction& factor) {
+  if (!number.of_time() && !factor) return {};
+  return {[=](double t) { return number(X, t) * (factor ? factor(t) : 1.0); }, factor.kinks};
+}
+
+/// What changes with time. `keys.rest` may be absent.
+void set_times(const Record& record, const SpringKeys& keys, const Vec3& X, fe::Spring& spring) {
+  const fe::TimeFunction factor = factor_of(record, keys.table);
+  spring.stiffness_at = in_time(function(record, keys.stiffness), X, factor);
+  if (spring.damping > 0 || function(record, keys.damping).of_time())
+    spring.damping_at = in_time(function(record, keys.damping), X, factor);
+  if (record.has(keys.rest)) spring.rest_at = in_time(function(record, keys.rest), X, {});
+}
+
 fe::Spring spring_of(const Record& record, const SpringKeys& keys, int first, int second, const Vec3& point,
                      const Mesh& mesh) {
   const Vec3 end = second < 0 ? point : Vec3(mesh.points.row(second).transpose());
   const Vec3 start = mesh.points.row(first).transpose();
-  return {.name = label(record),
-          .first = first,
-          .second = second,
-          .point = point,
-          .stiffness = value_at(record, keys.stiffness, start),
-          .damping = value_at(record, keys.damping, start),
-          .rest = record.has(keys.rest) ? value_at(record, keys.rest, start) : (end - start).norm()};
+  fe::Spring spring{.name = label(record),
+                    .first = first,
+                    .second = second,
+                    .point = point,
+                    .stiffness = value_at(record, keys.stiffness, start),
+                    .damping = value_at(record, keys.damping, start),
+                    .rest = record.has(keys.rest) ? value_at(record, keys.rest, start) : (end - start).norm()};
+  set_times(record, keys, start, spring);
+  return spring;
 }
 
 int node_of(const Record& record, Key<Integer> key, const Body& body) {
@@ -119,7 +149,7 @@ ConditionFactory spring_mesh_to_fixed() {
   const auto stiffness = tag.parameter<Formula>(
       "stiffness", {.unit = "force/length",
                     .range = positive(),
-                    .doc = "force per distance: a number, or an expression in X, Y, Z of the node"});
+                    .doc = "force per distance: a number, or an expression in X, Y, Z of the node and t"});
   const auto damping = tag.parameter<Formula>("rayleighStiffnes",
                                               {.unit = "time",
                                                .range = nonnegative(),
@@ -131,6 +161,7 @@ ConditionFactory spring_mesh_to_fixed() {
       "movingPoints", {.unit = "length",
                        .multiple_of = 3,
                        .doc = "points of the mesh, as many; the nearest node of the body is taken"});
+  const auto table = add_spring_table(tag);
   add_step(tag);
   tag.note("The springs have no rest length: each pulls its point of the mesh to its point in space.");
   tag.build([=](const Record& record) -> ConditionBuilder {
@@ -144,11 +175,18 @@ ConditionFactory spring_mesh_to_fixed() {
         const int node = nearest_node(record, point_of(from, i), body);
         const Vec3 X = body.mesh->points.row(node).transpose();
         const double k = value_at(record, stiffness, X);
-        springs.push_back({.name = label(record),
-                           .first = node,
-                           .point = point_of(to, i),
-                           .stiffness = k,
-                           .damping = value_at(record, damping, X) * k});
+        fe::Spring& spring = springs.emplace_back();
+        spring = {.name = label(record),
+                  .first = node,
+                  .point = point_of(to, i),
+                  .stiffness = k,
+                  .damping = value_at(record, damping, X) * k};
+        const Function number = function(record, stiffness), ratio = function(record, damping);
+        spring.stiffness_at = in_time(number, X, factor_of(record, table));
+        if (spring.stiffness_at || ratio.of_time())
+          spring.damping_at = {
+              [=, k = spring.stiffness_at](double t) { return ratio(X, t) * (k ? k(t) : number(X, t)); },
+              spring.stiffness_at.kinks};
       }
       return {springs};
     };
