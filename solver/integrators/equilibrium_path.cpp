@@ -23,6 +23,7 @@ IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, do
 void take(Run& run, const EquilibriumPath& path, double share, const Vector& u) {
   const Vector before = run.now.u;
   run.now.u = u;
+  run.now.time = path.time(share);
   run.now.load_factor = share;
   if (!run.free.modes.empty()) {
     Forces forces;

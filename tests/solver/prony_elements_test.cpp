@@ -155,6 +155,37 @@ TEST(PronyElements, StoreAndDissipateWhatMaxwellsSpringsDo) {
   }
 }
 
+// A strain that grows at a constant rate: spring i holds h = g tau (1 - exp(-t/tau)) of the stress S_1 of the whole
+// strain, and its dashpot takes h^2/(g tau), which comes to 2 W g tau (T - 2 tau (1 - exp(-T/tau)) + tau/2 (1 - exp(-2
+// T/tau))).
+TEST(PronyElements, LoseEnergyAtTheRateOfMaxwellsDashpotsToSecondOrder) {
+  double lost = 0;  // of 2 W
+  for (const auto& [g, tau] : {std::pair{0.3, 0.1}, std::pair{0.2, 1.0}})
+    lost += g * tau * (1 + 2 * tau * std::expm1(-1 / tau) - tau / 2 * std::expm1(-2 / tau));
+  for (const Way& way : ways) {
+    double errors[2];
+    for (const int fine : {0, 1}) {
+      Model model = viscous_model(way, unit_mesh(1, way.kind), {.youngs_modulus = 1000});
+      Prescribed all{.name = "all"};
+      for (int n = 0; n < model.mesh->point_count(); ++n) {
+        all.nodes.push_back(n);
+        const Vec3 X = model.mesh->points.row(n).transpose();
+        all.values.push_back(1e-7 * Vec3(X[0], -2 * X[1], 0));  // so small that the corotated law is linear
+      }
+      const int count = fine ? 80 : 40;
+      model.steps = {{.name = "pull", .dt = 1.0 / count, .count = count, .gravity = Vec3::Zero(), .prescribed = {all}}};
+      const Outcome outcome = solve(model, {});
+      ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+      const double lambda = 1000 * 0.3 / (1.3 * 0.4), mu = 1000 / 2.6, a = 1e-7, b = -2e-7;
+      const double W = way.plane == Plane::stress ? 1000 / 0.91 * (0.5 * (a * a + b * b) + 0.3 * a * b)
+                                                  : mu * (a * a + b * b) + 0.5 * lambda * (a + b) * (a + b);
+      errors[fine] = std::abs(outcome.state.energies.dissipated / (2 * W) - lost) / lost;
+    }
+    EXPECT_LT(errors[1], 1e-2) << way.name;
+    EXPECT_NEAR(errors[0] / errors[1], 4, 0.2) << way.name;
+  }
+}
+
 // Stress and pressure at 5 % and more of strain, where S, P and the Cauchy stress differ.
 TEST(PronyElements, ResultsRelaxWithTheForces) {
   for (const Way& way : ways) {
