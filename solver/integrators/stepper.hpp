@@ -28,7 +28,7 @@ struct Run {
   Motion now;
   std::vector<double> residuals = {};                                      ///< of the increment that failed
   Vector external_before = {}, reaction_before = {}, damping_before = {};  ///< forces at the last mark
-  double marked = 0;                   ///< time of the last mark
+  double marked = 0;                                                       ///< time of the last mark
   Vector internal_before = {};         ///< internal forces at the last mark, where there is a history
   double piece = 0;                    ///< adaptive_step: length of the next piece, in time; 0: not known yet
   int pieces = 0;                      ///< implicit dynamics: time steps taken
