@@ -11,11 +11,11 @@
 namespace msml::operators {
 
 void run_checked(Operator& op, EarlyCheck check, std::function<void(Context&)> run) {
-  op.examine([check](const Record& record, const auto& report) {
+  op.examine([check](const Examination& scene) {
     try {
-      check(record);
+      check(scene.args);
     } catch (const Error& error) {
-      report(error);
+      scene.fault(error);
     }
   });
   op.run([check = std::move(check), run = std::move(run)](Context& c) {

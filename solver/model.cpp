@@ -281,10 +281,12 @@ void Model::check() const {
   check_regions(*this);
   check_elements(*this, element_kind(*this));
   for (const Region& region : regions) {
+    check_same_unknown(regions.front(), region);
     check_law(*this, region);
     check_prony(*this, region);
   }
   check_problem(*this);
+  check_preconditioner(*this, element_kind(*this));
   check_flat(*this);
   check_shapes(*this);
   for (const Inlay& inlay : inlays) check_inlay(*this, inlay);

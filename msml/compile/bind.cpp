@@ -92,6 +92,7 @@ Binding bind_given(Work& work, const Tag& tag, const std::string& star_attribute
       work.note(attribute.where,
                 fmt::format("{} of {} is accepted, but has no meaning", attribute.name, tag.description->tag()));
     } else {
+      binding.misread = true;
       unknown_attribute(work, tag, attribute);
     }
   }

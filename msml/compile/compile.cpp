@@ -59,19 +59,36 @@ void run_passes(Work& work, const Tag& root) {
   lower_objects(work, root);
   read_units(work, root);
   check_holders(work, root);
-  const bool sound = work.out.faults.empty();
   read_studies(work, root);
   keep_variables(work);
   note_unused(work);
   order_nodes(work);
-  if (sound) examine_nodes(work);  // else values may be missing
+  examine_nodes(work);
+}
+
+/// `whole`: nothing of the document was lost when it was read.
+Compilation compile_known(const Document& document, const Registry& registry, const CompileOptions& options,
+                          bool whole) {
+  Compilation out;
+  out.graph.scene = document.file;
+  out.graph.folder = document.folder;
+  const Document chosen = choose_tags(document, options, out.faults);
+  const Tag root = match_tags(registry, chosen, out.faults);
+  if (root.element) {
+    Work work{chosen, registry, options, out, {}, {}, {}, {}, {}, whole && out.faults.empty()};
+    run_passes(work, root);
+  }
+  sort_by_place(out.faults);
+  sort_by_place(out.warnings);
+  sort_by_place(out.notes);
+  return out;
 }
 
 /// The faults of the document and, where it has a root, those of the scene.
 Compilation compile_read(const Document& document, std::vector<Fault> faults, const Registry& registry,
                          const CompileOptions& options) {
   Compilation out;
-  if (document.root.tag == "msml") out = compile(document, registry, options);
+  if (document.root.tag == "msml") out = compile_known(document, registry, options, faults.empty());
   out.faults.insert(out.faults.end(), std::make_move_iterator(faults.begin()), std::make_move_iterator(faults.end()));
   sort_by_place(out.faults);
   return out;
@@ -80,19 +97,7 @@ Compilation compile_read(const Document& document, std::vector<Fault> faults, co
 }  // namespace
 
 Compilation compile(const Document& document, const Registry& registry, const CompileOptions& options) {
-  Compilation out;
-  out.graph.scene = document.file;
-  out.graph.folder = document.folder;
-  const Document chosen = choose_tags(document, options, out.faults);
-  const Tag root = match_tags(registry, chosen, out.faults);
-  if (root.element) {
-    Work work{chosen, registry, options, out, {}, {}, {}, {}, {}};
-    run_passes(work, root);
-  }
-  sort_by_place(out.faults);
-  sort_by_place(out.warnings);
-  sort_by_place(out.notes);
-  return out;
+  return compile_known(document, registry, options, true);
 }
 
 Compilation compile_text(const std::string& text, const std::string& file, const Registry& registry,

@@ -29,6 +29,7 @@ struct Binding {
   std::vector<Source> sources;   ///< one per slot
   std::vector<Location> places;  ///< one per slot: of the attribute, or of the tag
   std::vector<bool> given;       ///< one per slot
+  bool misread = false;          ///< an attribute has no slot: what seems to be left out may be meant by it
   std::vector<Binding> children;
 };
 

@@ -50,13 +50,18 @@ void declare_outputs(Work& work, const Tag& object, int node) {
   }
 }
 
-/// The environment's tag of a category, bound, or all defaults where the scene leaves it out.
-Binding environment_part(Work& work, const Tag& root, const std::string& category, const Location& where) {
-  const Tag* environment = root.only("environment");
-  if (const Tag* part = environment ? environment->only(category) : nullptr) return bind_tree(work, *part);
+/// True if some tag inside is unknown, and may be meant for any that seems to be missing.
+bool misspelt_inside(const Tag& tag) { return tag.children.size() < tag.element->children.size(); }
+
+/// Adds the tag of a category inside `parent`, bound, or all defaults where the scene leaves it out; nothing where that
+/// is not known. An absent parent is one that `root` leaves out.
+void add_part(Work& work, const Tag& root, const Tag* parent, const std::string& category, Binding& to) {
+  const Tag* part = parent ? parent->only(category) : nullptr;
+  if (part) to.children.push_back(bind_tree(work, *part));
+  if (part || misspelt_inside(parent ? *parent : root)) return;
   const auto described = work.registry.of_category(category);
   if (described.empty()) throw Error("no description of " + category, {}, Failure::internal);
-  return bind_defaults(*described.front(), where);
+  to.children.push_back(bind_defaults(*described.front(), to.where));
 }
 
 void lower(Work& work, const Tag& object, const Tag& root, int node) {
@@ -67,10 +72,13 @@ void lower(Work& work, const Tag& object, const Tag& root, int node) {
   Binding args = bind_defaults(*simulation.op, where);
   args.id = simulation.id;
   args.children.push_back(std::move(body));
-  args.children.push_back(environment_part(work, root, "solver", where));
-  Binding steps = environment_part(work, root, "simulation", where);
-  if (steps.children.empty()) steps.children.push_back(environment_part(work, root, "step", where));
-  args.children.push_back(std::move(steps));
+  const Tag* environment = root.only("environment");
+  add_part(work, root, environment, "solver", args);
+  const std::size_t before = args.children.size();
+  add_part(work, root, environment, "simulation", args);
+  const Tag* stages = environment ? environment->only("simulation") : nullptr;
+  if (args.children.size() > before && args.children.back().children.empty())
+    add_part(work, stages ? *stages : root, stages, "step", args.children.back());
   work.node(node).args = std::move(args);  // binding may have added file nodes
 }
 

@@ -36,6 +36,7 @@ struct Work {
   std::map<std::string, Written> written;                  ///< by target file name as the scene gives it
   std::map<std::pair<std::string, Type>, int> file_nodes;  ///< by path and type
   std::vector<std::string> steps;                          ///< names of the steps
+  bool every_tag = true;                                   ///< no tag of the document is unknown or misplaced
 
   void fault(const Location& where, std::string message) { out.faults.push_back({where, std::move(message)}); }
   void warn(const Location& where, std::string message) {
@@ -99,9 +100,9 @@ Document choose_tags(const Document& document, const CompileOptions& options, st
 void read_studies(Work& work, const Tag& root);
 
 // examine.cpp
-/// The record of a binding as far as the scene's text says; what flows along edges is absent.
+/// The record of a binding as far as the scene's text says: see Examination.
 Record literal_record(const Binding& binding);
-/// Asks each operator what makes no sense in its record; only of a scene whose own tags have no faults.
+/// Asks each operator what makes no sense in its record.
 void examine_nodes(Work& work);
 
 // order.cpp

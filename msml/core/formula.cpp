@@ -9,6 +9,8 @@
 #include <mutex>
 #include <numbers>
 
+#include "msml/core/braces.hpp"
+
 namespace msml {
 namespace {
 
@@ -95,8 +97,7 @@ FormulaFacts examine(const std::string& expression) {
 }
 
 std::vector<std::string> expression_parts(const std::string& text) {
-  std::string inner = trimmed(text);
-  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
+  const std::string inner = without_braces(text);
   std::vector<std::string> by_comma{""}, by_blank{""};
   int depth = 0;
   for (const char c : inner) {

@@ -76,9 +76,17 @@ class Context {
   int threads_;
 };
 
-/// Tells what makes no sense in a record before anything runs; attributes that other tasks feed are absent there. Each
-/// fault is handed to the second argument.
-using Examiner = std::function<void(const Record&, const std::function<void(const Error&)>&)>;
+/// A record as far as the text of a scene says it, for the operator's own checks before anything runs, and whom they
+/// tell. What another task feeds, what holds a fault of its own, and what a misspelt attribute may have meant is absent
+/// from Record::values, but `given`.
+struct Examination {
+  const Record& args;
+  bool every_tag = true;  ///< false where the scene has tags that are unknown or misplaced: others may be missing
+  std::function<void(const Error&)> fault, warn;
+};
+
+/// Tells what makes no sense in a record before anything runs.
+using Examiner = std::function<void(const Examination&)>;
 
 /// A description of category "operator" and the function behind it. Attributes are inputs, parameters and targets.
 class Operator : public Description {
@@ -99,7 +107,7 @@ class Operator : public Description {
   /// Its result is what it prints: it runs even where nothing else needs its outputs.
   void reports() { reports_ = true; }
   bool is_report() const { return reports_; }
-  /// Called when a scene is compiled, once all attributes have passed their own checks.
+  /// Called when a scene is compiled, whether its attributes have passed their own checks or not.
   void examine(Examiner examiner) { examiner_ = std::move(examiner); }
   const Examiner& examiner() const { return examiner_; }
   void run(std::function<void(Context&)> function) { run_ = std::move(function); }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "msml/core/braces.hpp"
 #include "msml/core/error.hpp"
 
 namespace msml {
@@ -46,8 +47,7 @@ std::string trimmed(std::string_view text) {
 }
 
 std::vector<std::string> list_parts(const std::string& text) {
-  std::string inner = trimmed(text);
-  if (inner.size() >= 2 && inner.front() == '{' && inner.back() == '}') inner = inner.substr(1, inner.size() - 2);
+  const std::string inner = without_braces(text);
   std::vector<std::string> parts;
   std::size_t i = 0;
   while ((i = inner.find_first_not_of(" \t\r\n,", i)) != std::string::npos) {

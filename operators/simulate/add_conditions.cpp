@@ -11,12 +11,6 @@
 namespace msml::simulation {
 namespace {
 
-/// A condition's tag with the step it acts in, "" = every.
-struct Placed {
-  const Record* record;
-  std::string step;
-};
-
 void collect(const Record& root, const std::string& step, std::vector<Placed>& found) {
   for (const Record& child : root.children) {
     const std::string own = text_of(child, "forStep");
@@ -141,22 +135,40 @@ void warn_of_conflicts(const fe::Step& step, const Mesh& mesh, double t, Reporte
 
 }  // namespace
 
-void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe::Model& model) {
-  std::vector<fe::Step>& steps = model.steps;
+std::vector<Placed> placed_conditions(const Record& root) {
   std::vector<Placed> placed;
   collect(root, "", placed);
-  const Surroundings around{body.kind, body.scalar, &model.settings};
+  return placed;
+}
+
+std::vector<std::string> step_names(const Record& root) {
+  std::vector<std::string> names;
+  for (const Record* step : all_of(root, "step"))
+    names.push_back(step->id.empty() ? fmt::format("step{}", names.size() + 1) : step->id);
+  return names;
+}
+
+void check_steps(const Placed& condition, const std::vector<std::string>& steps) {
+  if (condition.record->tag() != "supportingMesh" || condition.step.empty() || steps.empty()) return;
+  if (steps.size() > 1 || steps.front() != condition.step)
+    refuse(*condition.record, fmt::format("forStep = '{}': it acts in all steps; leave forStep out", condition.step));
+}
+
+void add_conditions(const Record& root, const Body& body, Reporter& reporter, fe::Model& model) {
+  std::vector<fe::Step>& steps = model.steps;
+  const Surroundings around{.kind = body.kind, .scalar = body.scalar, .settings = &model.settings};
+  std::vector<std::string> names;
+  for (const fe::Step& step : steps) names.push_back(step.name);
   std::vector<std::vector<fe::Prescribed>> lasting(steps.size());
-  for (const Placed& each : placed) {
+  for (const Placed& each : placed_conditions(root)) {
     check_condition(*each.record, around);
+    check_steps(each, names);
     const Condition condition = make<ConditionBuilder>(*each.record)(body, reporter);
     if (const auto* start = std::get_if<InitialState>(&condition.what)) {
       start_with(model, *start);
       continue;
     }
     if (const auto* inlay = std::get_if<fe::Inlay>(&condition.what)) {
-      if (!each.step.empty() && (steps.size() > 1 || steps.front().name != each.step))
-        refuse(*each.record, fmt::format("forStep = '{}': it acts in all steps; leave forStep out", each.step));
       model.inlays.push_back(*inlay);
       continue;
     }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "operators/simulate/idle_attributes.hpp"
+#include "operators/simulate/check_output.hpp"
 #include "operators/simulate/records.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/materials/law.hpp"
@@ -60,6 +60,16 @@ void tell_of_time(const fe::Model& model, Reporter& reporter) {
   }
 }
 
+/// Refuses requests that have no meaning; of the fields that a scene leaves to the defaults, those are dropped.
+void check_requests(const Record& object, Simulation& simulation) {
+  const Surroundings around{.kind = simulation.body.kind,
+                            .scalar = simulation.body.scalar,
+                            .mixed = simulation.model.formulation == fe::Formulation::mixed};
+  for (const Record* record : all_of(object, "output")) check_output(*record, around);
+  for (OutputRequest& request : simulation.outputs)
+    std::erase_if(request.fields, [&](const std::string& field) { return !has_meaning(field, around); });
+}
+
 bool wants_energy(const OutputRequest& output) {
   return output.kind == OutputKind::energies ||
          std::any_of(output.fields.begin(), output.fields.end(),
@@ -107,9 +117,9 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads) {
   model.settings = make<SettingsBuilder>(required(args, "solver"))(reporter, threads);
   model.steps = build_steps(args);
   for (const Record* step : all_of(args, "step")) check_gravity(*step, body.scalar, body.kind);
+  check_requests(object, simulation);
   if (!body.scalar) note_gravity(all_of(args, "step"), body.kind, reporter);
   add_conditions(object, body, reporter, model);
-  warn_of_idle(args, model.settings, body.scalar, reporter);
   tell_of_time(model, reporter);
   model.stored_energies = std::any_of(simulation.outputs.begin(), simulation.outputs.end(), wants_energy);
   return simulation;

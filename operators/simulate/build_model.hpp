@@ -6,6 +6,7 @@
 
 #include "operators/simulate/body.hpp"
 #include "operators/simulate/settings.hpp"
+#include "operators/simulate/surroundings.hpp"
 
 namespace msml::simulation {
 
@@ -33,6 +34,12 @@ std::vector<fe::Region> build_regions(const std::vector<const Record*>& records,
 /// the elements (vertex: particles) do not move along.
 void check_gravity(const Record& step, bool scalar, CellKind kind);
 
+/// Throws Error at the region's place where its indices, listed in place, count faces.
+void check_region_indices(const Record& region);
+
+/// Throws Error at the solver's place where all numbers of all loads are 0, but arc length is to follow them.
+void check_arc_loads(const Record& args, const Surroundings& around);
+
 /// Its label, or "region2" for the second without one.
 std::string region_name(const Record& region, std::size_t position);
 
@@ -42,6 +49,20 @@ void check_material(const Record& material, bool particles);
 /// The masses of the particles of a body: the pointMass of the region that each belongs to.
 std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& records, const Body& body,
                                         Reporter& reporter);
+
+/// A condition's tag with the step it acts in, "" = every.
+struct Placed {
+  const Record* record;
+  std::string step;
+};
+/// The conditions under `root`, in document order: forStep of the tag wins over that of the constraint around it.
+std::vector<Placed> placed_conditions(const Record& root);
+
+/// The names of the steps under `root`: those of the scene, or step1, step2, ….
+std::vector<std::string> step_names(const Record& root);
+
+/// Throws Error at the condition's place where it acts in all steps, but names one of several.
+void check_steps(const Placed& condition, const std::vector<std::string>& steps);
 
 /// Adds the conditions under `root` to the model: initial states, and the others to the steps they act in: forStep of
 /// the tag, else of the constraint around it, else every step. A name that is no step is warned of.

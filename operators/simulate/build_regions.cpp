@@ -118,6 +118,13 @@ void check_material(const Record& material, bool particles) {
     refuse(material, "is for a body of particles; elements need a material law");
 }
 
+void check_region_indices(const Record& region) {
+  const int slot = region.description->find("indices");
+  const auto* literal = std::get_if<IndexSetPtr>(&region.values[static_cast<std::size_t>(slot)]);
+  if (literal != nullptr && (*literal)->kind == Indexed::faces)
+    refuse(region, "indices counts faces; a region needs elements, or nodes whose elements are meant");
+}
+
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter) {
   if (records.empty()) throw Error("the object has no region with a material");
   const Owners owners(records, body, reporter);
@@ -141,7 +148,7 @@ std::vector<fe::PointMass> build_masses(const std::vector<const Record*>& record
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& material = material_of(*records[i], true);
     if (const Record* mass = first_of(*records[i], "mass"))
-      refuse(*mass, "has no meaning for particles; their pointMass says it");
+      refuse(*mass, "has no meaning for particles; their pointMass says it");  // so is prony, before anything runs
     for (const int element : owners.elements(i))
       masses.push_back({body.mesh->cell(element)[0], make<double>(material)});
   }

@@ -3,15 +3,19 @@
 #include "operators/simulate/examine_scene.hpp"
 
 #include <algorithm>
+#include <map>
 #include <memory>
+#include <set>
 
 #include "msml/core/silent_reporter.hpp"
 #include "operators/simulate/build_model.hpp"
+#include "operators/simulate/check_output.hpp"
 #include "operators/simulate/conditions/condition.hpp"
+#include "operators/simulate/fillings.hpp"
+#include "operators/simulate/idle_attributes.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/varying_record.hpp"
 #include "solver/combinations.hpp"
-#include "solver/materials/fibres.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::simulation {
@@ -20,37 +24,20 @@ namespace {
 using Report = std::function<void(const Error&)>;
 using LawPtr = std::shared_ptr<const fe::Law>;
 
-bool varies(const Value& value) {
-  const auto changes = [](const Formula& formula) { return !formula.constant(); };
-  const auto* formula = std::get_if<Formula>(&value);
-  const auto* list = std::get_if<Formulas>(&value);
-  return (formula != nullptr && changes(*formula)) || (list != nullptr && std::ranges::any_of(*list, changes));
+/// Puts faults without a place of their own at the place of the record.
+Report at(const Record& record, const Report& fault) {
+  return [&](const Error& error) {
+    fault(Error(error.what(), error.where().line > 0 ? error.where() : record.where, error.failure()));
+  };
 }
 
-/// A direction that names a field of the mesh.
-bool named_direction(const Slot& slot, const Value& value) {
-  const auto* text = std::get_if<std::string>(&value);
-  return slot.unit == "direction" && text != nullptr && fe::direction_numbers(*text).empty();
-}
-
-/// False where an attribute is not known yet: it comes from another task, or differs from place to place.
-bool complete(const Record& record) {
-  const auto& slots = record.description->slots();
-  for (std::size_t i = 0; i < slots.size(); ++i)
-    if (varies(record.values[i]) || named_direction(slots[i], record.values[i]) ||
-        (slots[i].required && type(record.values[i]) == Type::nothing))
-      return false;
-  const std::string& category = record.description->category();
-  return text_of(record, "fields").empty() || (category != "material" && category != "prony");
-}
-
-/// Hands what `check` throws to `fault`, at the place of the record where it has none of its own.
+/// Hands what `check` throws to `fault`.
 template <class Check>
 void attempt(const Record& record, const Report& fault, const Check& check) {
   try {
     check();
   } catch (const Error& error) {
-    fault(Error(error.what(), error.where().line > 0 ? error.where() : record.where, error.failure()));
+    at(record, fault)(error);
   }
 }
 
@@ -64,82 +51,111 @@ struct Part {
 /// What the object and the solver say, as a model without a mesh.
 struct Outline {
   fe::Model model;
-  CellKind kind = CellKind::vertex;
+  bool settings = false;  ///< those of the model are known
+  std::optional<CellKind> kind = {};
   std::vector<Part> parts;
 };
 
-Part part_of(const Record& record, std::size_t position, bool particles, const Report& fault) {
+/// What keeps a law from being built goes to `of_law`.
+Part part_of(const Record& record, std::size_t position, std::optional<CellKind> kind, const Report& fault,
+             const Report& of_law) {
   Part part{.region = {.name = region_name(record, position), .law = nullptr},
             .material = first_of(record, "material"),
             .prony = first_of(record, "prony")};
-  if (part.prony != nullptr)
-    attempt(*part.prony, fault, [&] {
-      VaryingRecord::check(*part.prony);
-      if (complete(*part.prony)) part.region.prony = make<fe::Prony>(*part.prony);
-    });
-  if (part.material == nullptr) return part;
-  const Record& material = *part.material;
-  attempt(material, fault, [&] {
-    check_material(material, particles);
-    VaryingRecord::check(material);
-    if (material.tag() != "pointMass" && complete(material)) part.region.law = make<LawPtr>(material);
-  });
-  if (const Record* mass = first_of(record, "mass")) attempt(*mass, fault, [&] { VaryingRecord::check(*mass); });
+  if (part.prony != nullptr) part.region.prony = {{0.5}, {1}};  // where it cannot be made
+  if (part.prony != nullptr && complete(*part.prony))
+    attempt(*part.prony, fault, [&] { part.region.prony = make<fe::Prony>(*part.prony); });
+  attempt(record, fault, [&] { check_region_indices(record); });
+  if (kind && part.material != nullptr)
+    attempt(*part.material, fault, [&] { check_material(*part.material, kind == CellKind::vertex); });
+  for (const char* category : {"mass", "prony"})
+    if (const Record* beside = first_of(record, category); beside != nullptr && kind == CellKind::vertex)
+      attempt(*beside, fault, [&] { refuse(*beside, "has no meaning for particles; their pointMass says it"); });
+  if (part.material == nullptr || part.material->tag() == "pointMass" || !complete(*part.material)) return part;
+  attempt(*part.material, of_law, [&] { part.region.law = make<LawPtr>(*part.material); });
   return part;
 }
 
-void read_settings(const Record& args, const Report& fault, fe::Model& model) {
+void read_settings(const Record& args, const Report& fault, Outline& outline) {
   const Record* solver = first_of(args, "solver");
   if (solver == nullptr || !complete(*solver)) return;
   attempt(*solver, fault, [&] {
     SilentReporter silent;
-    model.settings = make<SettingsBuilder>(*solver)(silent, 1);
-    fe::check_settings(model.settings);
+    outline.model.settings = make<SettingsBuilder>(*solver)(silent, 1);
+    outline.settings = true;
   });
+  if (outline.settings) fe::check_settings(outline.model.settings, at(*solver, fault));
 }
 
-Outline outline_of(const Record& args, const Report& fault) {
+Outline outline_of(const Record& args, const Report& fault, const Report& of_law) {
   Outline outline;
   fe::Model& model = outline.model;
-  const Record* mesh = first_of(args, "mesh");
-  if (mesh != nullptr) {
+  if (const Record* mesh = first_of(args, "mesh")) {
     const MeshChoice words = words_of_mesh(*mesh);
     outline.kind = words.kind;
     model.formulation = words.formulation;
     model.quadrature = words.quadrature;
     model.plane = words.plane;
+    attempt(*mesh, fault, [&] { check_mesh(*mesh); });
   }
-  read_settings(args, fault, model);
+  read_settings(args, fault, outline);
   const auto records = all_of(args, "region");
   for (std::size_t i = 0; i < records.size(); ++i) {
-    outline.parts.push_back(part_of(*records[i], i, mesh != nullptr && outline.kind == CellKind::vertex, fault));
+    outline.parts.push_back(part_of(*records[i], i, outline.kind, fault, of_law));
     model.regions.push_back(outline.parts.back().region);
   }
   return outline;
 }
 
+Surroundings surroundings_of(const Outline& outline) {
+  const fe::Model& model = outline.model;
+  Surroundings around{.kind = outline.kind,
+                      .mixed = model.formulation == fe::Formulation::mixed,
+                      .settings = outline.settings ? &model.settings : nullptr};
+  bool every = !outline.parts.empty(), fibres = false;
+  for (const Part& part : outline.parts) {
+    every = every && part.material != nullptr;
+    if (part.material == nullptr) continue;
+    if (!around.scalar) around.scalar = part.material->tag() == "diffusionMaterial";
+    fibres = fibres || part.material->description->find("fiber") >= 0;
+    around.incompressible = around.incompressible || (part.region.law != nullptr && part.region.law->incompressible());
+  }
+  if (every) around.fibres = fibres;
+  if (outline.kind == CellKind::vertex) around.scalar = false;
+  return around;
+}
+
 void examine_combinations(const Record& args, const Outline& outline, const Report& fault) {
   const fe::Model& model = outline.model;
-  if (const Record* mesh = first_of(args, "mesh"))
-    attempt(*mesh, fault, [&] { fe::check_elements(model, outline.kind); });
+  if (const Record* mesh = first_of(args, "mesh")) fe::check_elements(model, *outline.kind, at(*mesh, fault));
+  const auto first = std::ranges::find_if(outline.parts, [](const Part& part) { return part.region.law != nullptr; });
   for (const Part& part : outline.parts) {
-    if (part.material != nullptr) attempt(*part.material, fault, [&] { fe::check_law(model, part.region); });
-    if (part.prony != nullptr) attempt(*part.prony, fault, [&] { fe::check_prony(model, part.region); });
+    if (part.prony != nullptr) fe::check_prony(model, part.region, at(*part.prony, fault));
+    if (part.region.law == nullptr) continue;
+    fe::check_law(model, part.region, at(*part.material, fault));
+    fe::check_same_unknown(first->region, part.region, at(*part.material, fault));
   }
   const Record* solver = first_of(args, "solver");
-  attempt(solver != nullptr ? *solver : args, fault, [&] { fe::check_problem(model); });
+  if (solver == nullptr || !outline.settings) return;
+  fe::check_problem(model, at(*solver, fault));
+  attempt(*solver, fault, [&] { check_mass_matrix(*solver, model.settings); });
+  if (outline.kind) fe::check_preconditioner(model, *outline.kind, at(*solver, fault));
 }
 
 /// Conditions against the elements, the laws and the solver, as far as these are known.
-void examine_conditions(const Record& args, const Outline& outline, const Report& fault) {
-  const auto known = std::find_if(outline.parts.begin(), outline.parts.end(),
-                                  [](const Part& part) { return part.region.law != nullptr; });
-  Surroundings around{.kind = outline.kind, .settings = &outline.model.settings};
-  if (known != outline.parts.end()) around.scalar = known->region.law->components() == 1;
-  for (const Record* condition : all_of(args, "constraint"))
-    attempt(*condition, fault, [&] { check_condition(*condition, around); });
+void examine_conditions(const Record& args, const Surroundings& around, const Report& fault) {
+  const auto velocities = std::ranges::count_if(
+      all_of(args, "constraint"), [](const Record* record) { return record->tag() == "initialVelocity"; });
+  const std::vector<std::string> steps = step_names(args);
   for (const Record* step : all_of(args, "step"))
-    attempt(*step, fault, [&] { check_gravity(*step, around.scalar.value_or(false), outline.kind); });
+    if (around.kind) attempt(*step, fault, [&] { check_gravity(*step, around.scalar.value_or(false), *around.kind); });
+  for (const Placed& placed : placed_conditions(args)) {
+    const Record& condition = *placed.record;
+    attempt(condition, fault, [&] { check_condition(condition, around); });
+    attempt(condition, fault, [&] { check_counts(condition); });
+    attempt(condition, fault, [&] { check_divergence(condition, around, velocities == 1); });
+    attempt(condition, fault, [&] { check_steps(placed, steps); });
+  }
 }
 
 /// A damper somewhere: forward Euler lives on them.
@@ -155,7 +171,8 @@ bool damps(const Record& args) {
 void examine_forward_euler(const Record& args, const Outline& outline, const Report& fault) {
   const fe::Settings& s = outline.model.settings;
   const Record* solver = first_of(args, "solver");
-  if (s.integrator != fe::Integrator::forward_euler || s.allow_unstable || solver == nullptr) return;
+  if (!outline.settings || s.integrator != fe::Integrator::forward_euler || s.allow_unstable || solver == nullptr)
+    return;
   if (s.damping_mass > 0 || s.damping_stiffness > 0 || outline.kind == CellKind::vertex || damps(args)) return;
   attempt(*solver, fault, [&] {
     refuse(*solver,
@@ -165,15 +182,82 @@ void examine_forward_euler(const Record& args, const Outline& outline, const Rep
   });
 }
 
+void examine_outputs(const Record& args, const Surroundings& around, const Report& fault) {
+  for (const Record* record : all_of(args, "output")) {
+    Record request = *record;
+    request.values[static_cast<std::size_t>(record->description->find("id"))] = std::string("x");  // judged elsewhere
+    if (complete(request)) attempt(*record, fault, [&] { make<OutputRequest>(request); });
+    attempt(*record, fault, [&] { check_output(*record, around); });
+  }
+}
+
+enum class Kind : std::uint8_t { fault, fault_of_law, idle };
+
+/// One thing that is wrong, or idle.
+struct Finding {
+  Error error;
+  Kind kind;
+  int line() const { return error.where().line; }
+  bool operator<(const Finding& other) const {
+    return std::pair(line(), std::string(error.what())) < std::pair(other.line(), std::string(other.error.what()));
+  }
+};
+
+/// All that is found in a record in which nothing is open.
+std::vector<Finding> examine_filled(const Record& args, bool every_tag) {
+  std::vector<Finding> found;
+  const Report fault = [&](const Error& error) { found.push_back({error, Kind::fault}); };
+  const Report of_law = [&](const Error& error) { found.push_back({error, Kind::fault_of_law}); };
+  const Outline outline = outline_of(args, fault, of_law);
+  const Surroundings around = surroundings_of(outline);
+  examine_combinations(args, outline, fault);
+  examine_conditions(args, around, fault);
+  examine_outputs(args, around, fault);
+  if (every_tag) {
+    examine_forward_euler(args, outline, fault);
+    attempt(args, fault, [&] { check_arc_loads(args, around); });
+  }
+  if (outline.settings) find_idle(args, around, [&](const Error& error) { found.push_back({error, Kind::idle}); });
+  return found;
+}
+
+/// What is found with every filling. Where a law refuses the very numbers that a filling has, which few others have, it
+/// may be about to refuse what it refuses with the others.
+std::vector<Finding> certain(const std::vector<std::vector<Finding>>& fillings) {
+  std::map<Finding, std::size_t> counts;
+  for (const auto& filling : fillings)
+    for (const Finding& one : std::set<Finding>(filling.begin(), filling.end())) ++counts[one];
+  const auto rare = [&](const Finding& one) { return 3 * counts[one] < fillings.size(); };
+  std::vector<Finding> kept;
+  for (const auto& [one, count] : counts) {
+    const auto agrees = [&](const std::vector<Finding>& filling) {
+      return std::ranges::any_of(filling, [&](const Finding& other) {
+        const bool same = !(one < other) && !(other < one);
+        const bool laws = one.kind == Kind::fault_of_law && other.kind == Kind::fault_of_law;
+        return same || (laws && other.line() == one.line() && rare(other));
+      });
+    };
+    if (!rare(one) && std::ranges::all_of(fillings, agrees)) kept.push_back(one);
+  }
+  return kept;
+}
+
+/// What expressions and fields may say, whatever they are worked out to be.
+void examine_expressions(const Record& args, const Report& fault) {
+  for (const char* category : {"material", "mass", "prony"})
+    for (const Record* record : all_of(args, category)) attempt(*record, fault, [&] { VaryingRecord::check(*record); });
+}
+
 }  // namespace
 
-void examine_scene(const Record& args, const Report& fault) {
-  const Outline outline = outline_of(args, fault);
-  examine_combinations(args, outline, fault);
-  examine_conditions(args, outline, fault);
-  examine_forward_euler(args, outline, fault);
-  for (const Record* record : all_of(args, "output"))
-    if (complete(*record)) attempt(*record, fault, [&] { make<OutputRequest>(*record); });
+void examine_scene(const Examination& scene) {
+  examine_expressions(scene.args, scene.fault);
+  const Fillings fillings(scene.args);
+  std::vector<std::vector<Finding>> found;
+  do {
+    found.push_back(examine_filled(fillings.at(static_cast<int>(found.size())), scene.every_tag));
+  } while (!found.front().empty() && static_cast<int>(found.size()) < fillings.count());
+  for (const Finding& one : certain(found)) (one.kind == Kind::idle ? scene.warn : scene.fault)(one.error);
 }
 
 }  // namespace msml::simulation

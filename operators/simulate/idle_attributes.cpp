@@ -4,6 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "msml/core/formula.hpp"
 #include "operators/simulate/records.hpp"
 
 namespace msml::simulation {
@@ -13,7 +16,6 @@ namespace {
 struct Beside {
   const Record& record;  ///< its tag
   const fe::Settings& settings;
-  bool scalar;
 };
 
 struct Need {
@@ -23,12 +25,24 @@ struct Need {
 };
 
 bool dynamic(const Beside& b) { return fe::is_dynamic(b.settings.integrator); }
+bool implicit(const Beside& b) { return !fe::is_explicit(b.settings.integrator); }
 bool newmark(const Beside& b) { return b.settings.integrator == fe::Integrator::newmark; }
+bool may_grow(const Beside& b) { return newmark(b) || !implicit(b); }
 bool along_an_arc(const Beside& b) { return b.settings.arc_length.on; }
-bool iterates(const Beside& b) {
-  return !fe::is_explicit(b.settings.integrator) && b.settings.linear_solver != fe::LinearSolver::direct;
-}
+bool iterates(const Beside& b) { return implicit(b) && b.settings.linear_solver != fe::LinearSolver::direct; }
 bool clamped(const Beside& b) { return text_of(b.record, "inversion") == "clamped"; }
+bool ramps(const Beside& b) {
+  const Record& record = b.record;
+  const int table = record.description->find("table"), moved = record.description->find("displacement");
+  const auto* list = std::get_if<Formulas>(&record.values[static_cast<std::size_t>(moved)]);
+  const bool of_time = list != nullptr && std::ranges::any_of(*list, [](const Formula& formula) {
+                         return !formula.constant() && examine(formula.text).of_time;
+                       });
+  return type(record.values[static_cast<std::size_t>(table)]) == Type::nothing && !of_time;
+}
+
+constexpr const char* implicit_words = "an implicit timeIntegration";
+constexpr const char* dynamic_words = "a dynamic timeIntegration";
 
 constexpr Need table[] = {
     {"solver", "beta", newmark, "timeIntegration=\"Newmark\""},
@@ -36,8 +50,9 @@ constexpr Need table[] = {
     {"solver", "spectralRadius",
      [](const Beside& b) { return b.settings.integrator == fe::Integrator::generalized_alpha; },
      "timeIntegration=\"generalizedAlpha\""},
-    {"solver", "dampingRayleighRatioMass", dynamic, "a dynamic timeIntegration"},
-    {"solver", "dampingRayleighRatioStiffness", dynamic, "a dynamic timeIntegration"},
+    {"solver", "mass", dynamic, dynamic_words},
+    {"solver", "dampingRayleighRatioMass", dynamic, dynamic_words},
+    {"solver", "dampingRayleighRatioStiffness", dynamic, dynamic_words},
     {"solver", "loadSteps", [](const Beside& b) { return b.settings.integrator == fe::Integrator::static_; },
      "timeIntegration=\"static\""},
     {"solver", "stepTolerance", [](const Beside& b) { return b.settings.adaptive_step && dynamic(b); },
@@ -46,9 +61,22 @@ constexpr Need table[] = {
     {"solver", "largestLoadFactor", along_an_arc, "arcLength=\"true\""},
     {"solver", "largestDisplacement", along_an_arc, "arcLength=\"true\""},
     {"solver", "preconditioner", iterates, "a linearSolver that iterates"},
+    {"solver", "linearSolver", implicit, implicit_words},
+    {"solver", "newtonIterations", implicit, implicit_words},
+    {"solver", "tolerance", implicit, implicit_words},
+    {"solver", "lineSearch", implicit, implicit_words},
+    {"solver", "definiteness", implicit, implicit_words},
+    {"solver", "untangle", implicit, implicit_words},
+    {"solver", "allowUnstable", may_grow, "timeIntegration=\"Newmark\" or an explicit one"},
+    {"linearElasticMaterial", "tangent", [](const Beside& b) { return text_of(b.record, "strain") != "small"; },
+     "strain=\"corotated\""},
     {"", "clampedBelow", clamped, "inversion=\"clamped\""},
-    {"probe", "field", [](const Beside& b) { return b.scalar || text_of(b.record, "field") != "value"; },
-     "a scalar problem (diffusionMaterial) for \"value\"; a solid has a displacement"}};
+    {"", "damping", dynamic, dynamic_words},
+    {"", "rayleighStiffnes", dynamic, dynamic_words},
+    {"displacementConstraint", "ramp", ramps, "a displacement without a table and without t"},
+    {"probe", "count",
+     [](const Beside& b) { return b.record.given[static_cast<std::size_t>(b.record.description->find("along"))]; },
+     "along"}};
 
 /// True if both are the same number, word or expression.
 template <class... Types>
@@ -67,16 +95,39 @@ bool said(const Record& record, std::size_t slot) {
   return described.name != "preconditioner" || text == nullptr || (*text != "none" && !of_other_program(*text));
 }
 
+/// Fields that are asked for although each of their values is known before.
+void find_idle_fields(const Record& args, const Surroundings& around, const std::function<void(const Error&)>& tell) {
+  Words asked;
+  for (const char* attribute : {"field", "fields"})
+    if (const int slot = args.description->find(attribute);
+        slot >= 0 && args.description->category() == "output" && args.given[static_cast<std::size_t>(slot)]) {
+      const Value& value = args.values[static_cast<std::size_t>(slot)];
+      if (const auto* list = std::get_if<Words>(&value)) asked = *list;
+      if (const auto* one = std::get_if<std::string>(&value)) asked = {*one};
+    }
+  for (const std::string& field : asked) {
+    if ((field == "velocity" || field == "acceleration") && !fe::is_dynamic(around.settings->integrator))
+      tell(Error(fmt::format("{}: {} is 0 with timeIntegration=\"{}\". Leave it out", args.tag(), field,
+                             fe::name(around.settings->integrator)),
+                 args.where));
+    if (field.starts_with("fiberStretch") && around.fibres == false && around.scalar == false)
+      tell(
+          Error(fmt::format("{}: {} is 1, since no material has fibres. Leave it out", args.tag(), field), args.where));
+  }
+}
+
 }  // namespace
 
-void warn_of_idle(const Record& args, const fe::Settings& settings, bool scalar, Reporter& reporter) {
+void find_idle(const Record& args, const Surroundings& around, const std::function<void(const Error&)>& tell) {
   for (const Need& need : table) {
     const int slot = need.tag == args.tag() || *need.tag == '\0' ? args.description->find(need.attribute) : -1;
-    if (slot >= 0 && said(args, static_cast<std::size_t>(slot)) && !need.met({args, settings, scalar}))
-      reporter.warn(fmt::format("{}: {} means nothing here: it needs {}. Leave it out", located(args), need.attribute,
-                                need.words));
+    if (slot >= 0 && said(args, static_cast<std::size_t>(slot)) && !need.met({args, *around.settings}))
+      tell(Error(
+          fmt::format("{}: {} means nothing here: it needs {}. Leave it out", args.tag(), need.attribute, need.words),
+          args.where));
   }
-  for (const Record& child : args.children) warn_of_idle(child, settings, scalar, reporter);
+  find_idle_fields(args, around, tell);
+  for (const Record& child : args.children) find_idle(child, around, tell);
 }
 
 }  // namespace msml::simulation

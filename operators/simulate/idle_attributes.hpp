@@ -2,13 +2,14 @@
 // What a scene says although it means nothing there.
 #pragma once
 #include "msml/core/operator.hpp"
-#include "solver/model.hpp"
+#include "operators/simulate/surroundings.hpp"
 
 namespace msml::simulation {
 
-/// Warns of each attribute in the record of a simulation and below it that has no meaning beside the others: loadSteps
-/// in dynamics, spectralRadius with Newmark. Attributes at their default say nothing and are passed over.
-void warn_of_idle(const Record& args, const fe::Settings& settings, bool scalar, Reporter& reporter);
+/// Tells of each attribute in the record of a simulation and below it that has no meaning beside the others: loadSteps
+/// in dynamics, spectralRadius with Newmark. Attributes at their default say nothing and are passed over. `around` has
+/// settings.
+void find_idle(const Record& args, const Surroundings& around, const std::function<void(const Error&)>& tell);
 
 /// True for names in capitals such as SGAUSS_SEIDEL and ILU2, as other programs spell theirs.
 bool of_other_program(const std::string& name);

@@ -141,7 +141,7 @@ Factory<MeshChoice> particles() {
       {.unit = "length", .optional = true, .multiple_of = 3, .doc = "the particles, x y z each, instead of a mesh"});
   tag.note("Their regions hold a pointMass instead of a law and a density.");
   tag.build([=](const Record& record) {
-    if (record.has(mesh) == record.has(points)) refuse(record, "needs either mesh or points");
+    check_mesh(record);
     if (record.has(mesh)) return MeshChoice{with_vertices(record[mesh].points), CellKind::vertex};
     const std::vector<double>& list = record[points];
     return MeshChoice{
@@ -152,6 +152,14 @@ Factory<MeshChoice> particles() {
 }
 
 }  // namespace
+
+void check_mesh(const Record& record) {
+  if (record.tag() != "particles") return;
+  const auto given = [&](const char* name) {
+    return record.given[static_cast<std::size_t>(record.description->find(name))];
+  };
+  if (given("mesh") == given("points")) refuse(record, "needs either mesh or points");
+}
 
 MeshChoice words_of_mesh(const Record& record) {
   MeshChoice choice{.mesh = nullptr, .kind = CellKind::vertex};

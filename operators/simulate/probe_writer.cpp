@@ -32,13 +32,9 @@ Places places_of(const Simulation& simulation, const OutputRequest& request, con
   const Body& body = simulation.body;
   Places places;
   if (!request.point) {
-    if (!facts.nodal)
-      refuse(record, fmt::format("field {} is given at elements; a probe at nodes takes {}_nodal, one at a point both",
-                                 facts.name, facts.name));
     places.nodes = select_nodes(record, body, reporter).nodes;
     return places;
   }
-  if (body.kind == CellKind::vertex) refuse(record, "particles have no inside: take indices instead of a point");
   const SpotFinder finder(body);
   const Vec3 way = request.count > 1 ? Vec3((request.end - *request.point) / (request.count - 1)) : Vec3(Vec3::Zero());
   for (int i = 0; i < request.count; ++i) {

@@ -253,7 +253,6 @@ class SectionWriter final : public TableWriter {
                     {"time", "area", "force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"}),
         body_(simulation.body),
         normal_(request.normal.normalized()) {
-    check(*request.record);
     const Plane plane{*request.point, normal_, 1e-10 * diagonal(*body_.mesh)};
     pieces_ = cut(body_, simulation.model.thickness, plane);
     side_ = sides(body_, plane);
@@ -266,15 +265,6 @@ class SectionWriter final : public TableWriter {
   }
 
  private:
-  void check(const Record& record) const {
-    const int dimension = msml::dimension(body_.kind);
-    if (dimension == 0) refuse(record, "particles have no sections");
-    if (body_.scalar) refuse(record, "a scalar problem has no forces");
-    if (normal_.tail(3 - dimension).norm() > 0)
-      refuse(record, fmt::format("the normal {} leaves the {} of the body", place(normal_),
-                                 dimension == 1 ? "line (along x)" : "plane (of x and y)"));
-  }
-
   std::vector<std::vector<double>> rows(const fe::State& state, StateFields& fields) const override {
     const Points x = body_.small_strain ? body_.mesh->points : fields.positions();
     const fe::ElementResults results = fields.measure(needed);

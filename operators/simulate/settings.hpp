@@ -29,6 +29,9 @@ std::vector<Factory<MeshChoice>> mesh_kinds();
 /// and plane.
 MeshChoice words_of_mesh(const Record& record);
 
+/// Throws Error at the place of the tag where it is of particles and says both mesh and points, or neither.
+void check_mesh(const Record& record);
+
 /// The tag `mass`: mass per reference volume.
 Factory<double> mass();
 /// The tag `pointMass`: the mass of each particle of a region.
@@ -40,6 +43,9 @@ Factory<fe::Prony> prony();
 /// Settings of the solver; what is accepted for old scenes is noted. `threads` is used where the scene says nothing.
 using SettingsBuilder = std::function<fe::Settings(Reporter&, int threads)>;
 Factory<SettingsBuilder> solver();
+
+/// Throws Error at the solver's place where an explicit integrator is asked for a full mass matrix.
+void check_mass_matrix(const Record& solver, const fe::Settings& settings);
 
 /// A step without conditions.
 Factory<fe::Step> step();

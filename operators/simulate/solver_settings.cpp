@@ -227,6 +227,14 @@ fe::Settings read(const Record& record, const Keys& keys, Reporter& reporter, in
 
 }  // namespace
 
+void check_mass_matrix(const Record& solver, const fe::Settings& settings) {
+  const int slot = solver.description->find("mass");
+  if (fe::is_explicit(settings.integrator) && solver.given[static_cast<std::size_t>(slot)] && !settings.lumped_mass)
+    refuse(solver, fmt::format("mass=\"full\" does not go with the explicit timeIntegration=\"{}\", which divides by "
+                               "lumped masses: take mass=\"lumped\", or an implicit timeIntegration",
+                               fe::name(settings.integrator)));
+}
+
 bool of_other_program(const std::string& name) {
   return name.empty() || std::all_of(name.begin(), name.end(), [](char c) {
            return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';

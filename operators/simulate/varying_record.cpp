@@ -56,6 +56,10 @@ Named numbers_of(const Record& record, const std::string& attribute) {
   return {slot, entry - 1, 1, {}};
 }
 
+bool overlap(const Named& a, const Named& b) {
+  return a.slot == b.slot && a.entry < b.entry + b.count && b.entry < a.entry + a.count;
+}
+
 /// The attribute `fields`: "youngModulus=E mu[2]=stiffness".
 std::vector<Named> named_numbers(const Record& record) {
   std::vector<Named> named;
@@ -63,7 +67,10 @@ std::vector<Named> named_numbers(const Record& record) {
     const std::size_t equals = part.find('=');
     if (equals == std::string::npos || equals + 1 == part.size())
       refuse(record, fmt::format("fields: '{}' is no pair attribute=field", part));
-    named.push_back(numbers_of(record, part.substr(0, equals)));
+    const Named found = numbers_of(record, part.substr(0, equals));
+    if (std::ranges::any_of(named, [&](const Named& other) { return overlap(found, other); }))
+      refuse(record, fmt::format("fields names {} twice", part.substr(0, equals)));
+    named.push_back(found);
     named.back().field = part.substr(equals + 1);
   }
   return named;
@@ -90,12 +97,33 @@ Formulas formulas_of(const Slot& slot, const Value& value) {
   return text != nullptr && slot.unit == "direction" ? direction_formulas(*text) : Formulas{};
 }
 
+/// A direction that can only be meant as numbers or expressions has three, without faults.
+void check_direction(const Record& record, const Slot& slot, const std::string& text) {
+  const std::vector<std::string> parts = expression_parts(text);
+  const auto problem = [](const std::string& part) { return examine(part).problem; };
+  const bool expressions = std::ranges::all_of(parts, [&](const std::string& part) { return problem(part).empty(); });
+  const bool list = text.find_first_of(",(){}") != std::string::npos;
+  const bool number = !parts.empty() && parts.front().find_first_not_of("+-.0123456789eE") == std::string::npos &&
+                      parts.front().find_first_of("0123456789") != std::string::npos;
+  if (!list && !number && (!expressions || parts.size() == 1)) return;  // the name of a field
+  for (const std::string& part : parts)
+    if (!problem(part).empty())
+      refuse(record, fmt::format("{} = '{}': '{}': {}", slot.name, text, part, problem(part)));
+  if (parts.size() != 3)
+    refuse(record, fmt::format("{} = '{}' has {}; a direction has 3, or is the name of a cell field of the mesh",
+                               slot.name, text, counted(static_cast<long long>(parts.size()), "number")));
+}
+
 std::string direction_text(double x, double y, double z) { return fmt::format("{} {} {}", x, y, z); }
 
 }  // namespace
 
 void VaryingRecord::check(const Record& record) {
   named_numbers(record);
+  const std::vector<Slot>& slots = record.description->slots();
+  for (std::size_t s = 0; s < slots.size(); ++s)
+    if (const auto* text = std::get_if<std::string>(&record.values[s]); text != nullptr && slots[s].unit == "direction")
+      check_direction(record, slots[s], *text);
   expressions_of(record);
 }
 

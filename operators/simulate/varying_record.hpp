@@ -15,7 +15,7 @@ namespace msml::simulation {
 class VaryingRecord {
  public:
   /// Throws Error for what is wrong whatever the mesh is: expressions in t, `fields` that is no list of pairs or names
-  /// what is no number.
+  /// what is no number, or names one twice; directions that are neither three expressions nor a name.
   static void check(const Record& record);
 
   /// Throws Error also for a field that the mesh does not have or that has the wrong number of components, and for a

@@ -3,33 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/commands/real_language.hpp"
+#include "tests/commands/scene_parts.hpp"
 
 namespace msml {
 namespace {
 
 using testing::HasSubstr;
-
-/// What a scene says about one box; each part stands on a line of its own, from line 2 on.
-struct Parts {
-  std::string mesh = R"(<linearTet mesh="${b}"/>)";
-  std::string region = R"(<linearElasticMaterial youngModulus="1" poissonRatio="0.3"/>)";
-  std::string solver = R"(<solver timeIntegration="static"/>)";
-  std::string constraint = "";
-  std::string step = R"(<step gravity="0 0 0"/>)";
-};
-
-/// Its faults, line by line.
-std::string faults(const Parts& parts) {
-  const std::string scene =
-      "<msml><scene><object><mesh>\n" + parts.mesh + "\n</mesh><material><region indices=\"${i}\">\n" + parts.region +
-      "\n</region></material><constraints><constraint>\n" + parts.constraint +
-      "\n</constraint></constraints></object></scene><environment>\n" + parts.solver + "\n<simulation>" + parts.step +
-      "</simulation></environment><workflow><GenerateBoxMesh id=\"b\" size=\"1 1 1\" divisions=\"1 1 1\"/>"
-      "<ComputeIndicesFromBoxROI id=\"i\" mesh=\"${b}\" select=\"points\" box=\"0 0 0 1 1 1\"/></workflow></msml>";
-  return tiny::lines(
-      compile_text(scene, "/nonexistent/s.xml", real_language(), {.output_folder = "/nonexistent"}).faults);
-}
 
 std::string faults(const std::string& mesh, const std::string& region) {
   return faults(Parts{.mesh = mesh, .region = region});
@@ -107,8 +86,9 @@ TEST(FormulationLanguage, PronyIsForStressesInTime) {
 
 TEST(FormulationLanguage, ScalarProblemsAreStationary) {
   EXPECT_EQ(faults(Parts{.region = diffusion}), "");
-  EXPECT_THAT(faults(Parts{.region = diffusion, .solver = R"(<solver timeIntegration="Newmark"/>)"}),
-              HasSubstr("s.xml:8: a scalar problem (diffusionMaterial) is stationary, but timeIntegration is Newmark"));
+  EXPECT_THAT(
+      faults(Parts{.region = diffusion, .solver = R"(<solver timeIntegration="Newmark"/>)"}),
+      HasSubstr("s.xml:10: a scalar problem (diffusionMaterial) is stationary, but timeIntegration is Newmark"));
 }
 
 TEST(FormulationLanguage, ConditionsAreOfTheUnknownOfTheLaws) {
@@ -125,21 +105,22 @@ TEST(FormulationLanguage, ConditionsAreOfTheUnknownOfTheLaws) {
 TEST(FormulationLanguage, MixedElementsNeedEquationsAndADirectSolver) {
   const std::string mesh = R"(<quadraticTet mesh="${b}" formulation="mixed"/>)";
   EXPECT_THAT(faults(Parts{.mesh = mesh, .solver = R"(<solver timeIntegration="centralDifference"/>)"}),
-              HasSubstr("s.xml:8: timeIntegration=\"centralDifference\" is explicit, but the pressure"));
+              HasSubstr("s.xml:10: timeIntegration=\"centralDifference\" is explicit, but the pressure"));
   EXPECT_THAT(
       faults(Parts{.mesh = mesh, .solver = R"(<solver timeIntegration="static" linearSolver="CG"/>)"}),
-      HasSubstr("s.xml:8: linearSolver=\"CG\" (and \"GMRES\", which is taken as it) needs a positive definite matrix"));
+      HasSubstr(
+          "s.xml:10: linearSolver=\"CG\" (and \"GMRES\", which is taken as it) needs a positive definite matrix"));
 }
 
 TEST(FormulationLanguage, StepControlFitsTheIntegrator) {
   EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="quasiStatic" arcLength="true"/>)"}),
-              HasSubstr("s.xml:8: arcLength follows static equilibria, but timeIntegration is quasiStatic"));
+              HasSubstr("s.xml:10: arcLength follows static equilibria, but timeIntegration is quasiStatic"));
   EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="symplecticEuler" adaptiveStep="true"/>)"}),
-              HasSubstr("s.xml:8: adaptiveStep = true does not go with the explicit timeIntegration"));
+              HasSubstr("s.xml:10: adaptiveStep = true does not go with the explicit timeIntegration"));
   EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="static" arcLength="true" adaptiveStep="true"/>)"}),
-              HasSubstr("s.xml:8: adaptiveStep = true does not go with arcLength"));
+              HasSubstr("s.xml:10: adaptiveStep = true does not go with arcLength"));
   EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="Newmark" beta="0.1"/>)"}),
-              HasSubstr("s.xml:8: Newmark with beta = 0.1"));
+              HasSubstr("s.xml:10: Newmark with beta = 0.1"));
 }
 
 TEST(FormulationLanguage, ClampedLawsAreIsotropic) {
@@ -193,7 +174,8 @@ TEST(FormulationLanguage, VelocitiesNeedInertia) {
 
 TEST(FormulationLanguage, ArcLengthFollowsLoadsAlone) {
   Parts parts{.solver = R"(<solver timeIntegration="static" arcLength="true"/>)",
-              .constraint = R"(<displacementConstraint indices="${i}" displacement="0 0 1"/>)"};
+              .constraint = R"(<displacementConstraint indices="${i}" displacement="0 0 1"/>)",
+              .step = R"(<step gravity="0 0 -1"/>)"};
   EXPECT_THAT(faults(parts), HasSubstr("s.xml:6: displacementConstraint: moves supports, but arcLength follows loads"));
   parts.constraint = R"(<displacementConstraint indices="${i}" displacement="0 0 1" components="x"/>)";
   EXPECT_EQ(faults(parts), "");
@@ -201,7 +183,7 @@ TEST(FormulationLanguage, ArcLengthFollowsLoadsAlone) {
 
 TEST(FormulationLanguage, ForwardEulerNeedsDamping) {
   EXPECT_THAT(faults(Parts{.solver = R"(<solver timeIntegration="forwardEuler"/>)"}),
-              HasSubstr("s.xml:8: solver: forwardEuler is unstable at any dt without damping"));
+              HasSubstr("s.xml:10: solver: forwardEuler is unstable at any dt without damping"));
   EXPECT_EQ(faults(Parts{.solver = R"(<solver timeIntegration="forwardEuler" dampingRayleighRatioMass="1"/>)"}), "");
   EXPECT_EQ(faults(Parts{.solver = R"(<solver timeIntegration="forwardEuler"/>)",
                          .constraint = R"(<springToPoint indices="${i}" point="0 0 0" stiffness="1" damping="1"/>)"}),

@@ -101,28 +101,6 @@ TEST(Solver, EveryIntegratorHasItsName) {
   }
 }
 
-TEST(Solver, WhatMeansNothingBesideTheOthersIsWarnedOf) {
-  const auto warnings = [](const Attributes& attributes) {
-    Listener listener;
-    settings(attributes, listener);
-    return listener.warnings;
-  };
-  const std::string newmark = "Newmark", statics = "static";
-  EXPECT_THAT(warnings({{"timeIntegration", newmark}, {"spectralRadius", 0.5}}),
-              ElementsAre("line 7: solver: spectralRadius means nothing here: it needs "
-                          "timeIntegration=\"generalizedAlpha\". Leave it out"));
-  EXPECT_THAT(warnings({{"timeIntegration", newmark}, {"spectralRadius", 0.8}}), IsEmpty());  // the default
-  const std::map<std::string, Attributes> idle{
-      {"loadSteps", {{"timeIntegration", newmark}, {"loadSteps", Integer{4}}}},
-      {"stepTolerance", {{"timeIntegration", newmark}, {"stepTolerance", 0.1}}},
-      {"largestLoadFactor", {{"timeIntegration", statics}, {"largestLoadFactor", 2.0}}},
-      {"dampingRayleighRatioMass", {{"timeIntegration", statics}, {"dampingRayleighRatioMass", 1.0}}},
-      {"preconditioner", {{"linearSolver", std::string("direct")}, {"preconditioner", std::string("jacobi")}}}};
-  for (const auto& [name, attributes] : idle)
-    EXPECT_THAT(warnings(attributes), ElementsAre(testing::HasSubstr(name + " means nothing here"))) << name;
-  EXPECT_THAT(warnings({{"linearSolver", std::string("direct")}, {"preconditioner", std::string("ILU2")}}), IsEmpty());
-}
-
 TEST(Solver, OldNamesAreAcceptedWithANoteEach) {
   Listener listener;
   const auto made = settings({{"timeIntegration", std::string("NewmarkShapeMatching")},

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a condition may not say beside the elements, laws and solver of its scene.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "operators/simulate/conditions/condition.hpp"
@@ -34,16 +36,51 @@ bool leaves_out(const Record& record, int axis) {
   return words != nullptr && std::find(words->begin(), words->end(), std::string(1, "xyz"[axis])) == words->end();
 }
 
+/// What an axis across a body of lines or triangles is told.
+[[noreturn]] void refuse_across(const Record& record, CellKind kind, const std::string& attribute, std::size_t i,
+                                const std::string& value) {
+  refuse(record, fmt::format("{}: entry {} = {} is along {}, but {} moves along {} alone; write 0 there", attribute,
+                             i + 1, value, "xyz"[i % 3], dimension(kind) == 1 ? "a body of lines" : "a plane body",
+                             dimension(kind) == 1 ? "x" : "x and y"));
+}
+
+void check_normal(const Record& record, CellKind kind) {
+  const Value* value = value_of(record, "normal");
+  const auto* normal = value == nullptr ? nullptr : std::get_if<std::vector<double>>(value);
+  for (std::size_t i = static_cast<std::size_t>(dimension(kind)); normal != nullptr && i < normal->size(); ++i)
+    if ((*normal)[i] != 0) refuse_across(record, kind, "normal", i, fmt::format("{:g}", (*normal)[i]));
+}
+
+/// Some of the named axes must be ones that the body moves along.
+void check_components(const Record& record, CellKind kind) {
+  const Value* value = value_of(record, "components");
+  const auto* words = value == nullptr ? nullptr : std::get_if<Words>(value);
+  if (words == nullptr || words->empty()) return;
+  for (int axis = 0; axis < dimension(kind); ++axis)
+    if (!leaves_out(record, axis)) return;
+  refuse(record, fmt::format("components = {} holds nothing: {} moves along {} alone", fmt::join(*words, " "),
+                             dimension(kind) == 1 ? "a body of lines" : "a plane body",
+                             dimension(kind) == 1 ? "x" : "x and y"));
+}
+
 void check_vectors(const Record& record, CellKind kind, const std::string& attribute, const Formulas& list) {
   if (list.size() % 3 != 0 || (attribute == "pressure" && list.size() != 3)) return;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const int axis = static_cast<int>(i % 3);
     if (axis < dimension(kind) || zero(list[i]) || leaves_out(record, axis)) continue;
-    refuse(record, fmt::format("{}: entry {} = {} is along {}, but {} moves along {} alone; write 0 there", attribute,
-                               i + 1, list[i].constant() ? fmt::format("{:g}", list[i].number) : list[i].text,
-                               "xyz"[axis], dimension(kind) == 1 ? "a body of lines" : "a plane body",
-                               dimension(kind) == 1 ? "x" : "x and y"));
+    refuse_across(record, kind, attribute, i, list[i].constant() ? fmt::format("{:g}", list[i].number) : list[i].text);
   }
+}
+
+void check_pressure(const Record& condition) {
+  const Value* pressure = value_of(condition, "pressure");
+  const Value* follower = value_of(condition, "follower");
+  if (pressure == nullptr || follower == nullptr) return;
+  const auto* numbers = std::get_if<Formulas>(pressure);
+  const auto* wanted = std::get_if<bool>(follower);
+  if (numbers != nullptr && numbers->size() == 3 && wanted != nullptr && *wanted)
+    refuse(condition,
+           "follower = true has no meaning for a traction vector (three numbers), which keeps its direction");
 }
 
 void check_spring(const Record& condition) {
@@ -60,7 +97,12 @@ void check_motion(const Record& condition, const fe::Settings& settings) {
            fmt::format("has no meaning with timeIntegration=\"{}\", where nothing has inertia; leave it out, "
                        "or choose a dynamic timeIntegration",
                        fe::name(settings.integrator)));
-  if (condition.tag() != "displacementConstraint" || !settings.arc_length.on) return;
+  if (!settings.arc_length.on) return;
+  if (condition.tag() == "fixedValue")
+    if (const auto* value = std::get_if<Formula>(value_of(condition, "value")); value != nullptr && !zero(*value))
+      refuse(condition,
+             "moves the unknown, but arcLength follows loads alone: take value=\"0\", or arcLength=\"false\"");
+  if (condition.tag() != "displacementConstraint") return;
   const auto* moved = std::get_if<Formulas>(value_of(condition, "displacement"));
   for (std::size_t i = 0; moved != nullptr && i < moved->size(); ++i)
     if (!zero((*moved)[i]) && !leaves_out(condition, static_cast<int>(i % 3)))
@@ -68,17 +110,31 @@ void check_motion(const Record& condition, const fe::Settings& settings) {
              "moves supports, but arcLength follows loads alone: let the supports stay, or take arcLength=\"false\"");
 }
 
+void check_of_particles(const Record& condition) {
+  const std::string& tag = condition.tag();
+  if (tag == "bodyForce" || tag == "surfaceTraction" || tag.starts_with("surfacePressure"))
+    refuse(condition, "acts on elements, which particles do not have; take forceConstraint, or the gravity of a step");
+}
+
+void check_across(const Record& condition, CellKind kind) {
+  const auto& slots = condition.description->slots();
+  for (std::size_t s = 0; s < slots.size(); ++s)
+    if (const auto* list = std::get_if<Formulas>(&condition.values[s]))
+      check_vectors(condition, kind, slots[s].name, *list);
+  check_normal(condition, kind);
+  check_components(condition, kind);
+}
+
 }  // namespace
 
 void check_condition(const Record& condition, const Surroundings& around) {
+  if (around.kind == CellKind::vertex) check_of_particles(condition);
   if (around.scalar) check_unknown(condition, *around.scalar);
-  const bool flat = around.kind != CellKind::vertex && dimension(around.kind) < 3;
-  if (condition.tag() == "supportingMesh" && dimension(around.kind) != 3)
+  if (around.kind && condition.tag() == "supportingMesh" && dimension(*around.kind) != 3)
     refuse(condition, "needs a main mesh of tetrahedra");
-  const auto& slots = condition.description->slots();
-  for (std::size_t s = 0; s < slots.size() && flat; ++s)
-    if (const auto* list = std::get_if<Formulas>(&condition.values[s]))
-      check_vectors(condition, around.kind, slots[s].name, *list);
+  if (around.kind && *around.kind != CellKind::vertex && dimension(*around.kind) < 3)
+    check_across(condition, *around.kind);
+  check_pressure(condition);
   check_spring(condition);
   if (around.settings != nullptr) check_motion(condition, *around.settings);
 }

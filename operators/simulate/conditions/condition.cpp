@@ -126,13 +126,7 @@ fe::VectorFunction vector_of(const std::vector<Function>& parts) {
 NodeValues per_node(const Record& record, Key<Formulas> key, const NodeSelection& selection, const Mesh& mesh) {
   const Formulas& formulas = record[key];
   const std::string& attribute = name_of(record, key);
-  if (formulas.size() != 3 && selection.positions.empty())
-    refuse(record, fmt::format("{} has {} numbers; with indices of faces or elements 3 are allowed, the same for all "
-                               "nodes",
-                               attribute, formulas.size()));
-  if (formulas.size() != 3 && formulas.size() != 3 * static_cast<std::size_t>(selection.listed))
-    refuse(record, fmt::format("{} has {} numbers; allowed are 3, or 3 for each of the {} in indices ({})", attribute,
-                               formulas.size(), counted(selection.listed, "node"), 3 * selection.listed));
+  check_per_node(record, attribute, formulas, !selection.positions.empty(), selection.listed);
   if (constant(formulas) && formulas.size() == 3)
     return {{Vec3(formulas[0].number, formulas[1].number, formulas[2].number)}, {}};
   if (formulas.size() == 3) {
@@ -143,11 +137,6 @@ NodeValues per_node(const Record& record, Key<Formulas> key, const NodeSelection
     for (const int node : selection.nodes) values.values.push_back(function(mesh.points.row(node).transpose(), 0));
     return values;
   }
-  if (!constant(formulas))
-    refuse(record,
-           fmt::format("{} has expressions in a list of one vector per node; write 3 expressions for all nodes, "
-                       "where X, Y and Z tell them apart",
-                       attribute));
   NodeValues values;
   for (const int position : selection.positions) {
     const Formula* at = formulas.data() + 3 * static_cast<std::size_t>(position);
@@ -158,18 +147,8 @@ NodeValues per_node(const Record& record, Key<Formulas> key, const NodeSelection
 
 fe::FaceLoad face_load(const Record& record, Key<Formulas> key, const FaceSelection& selection, bool follower) {
   const Formulas& formulas = record[key];
-  const bool one_each = selection.listed && formulas.size() == selection.faces.size();
-  if (formulas.size() != 3 && formulas.size() != 1 && !one_each)
-    refuse(record, fmt::format("{} has {} numbers; allowed are 1, 3 (a traction vector){}", name_of(record, key),
-                               formulas.size(),
-                               selection.listed ? fmt::format(", or one for each of the {} in indices",
-                                                              counted(static_cast<int>(selection.faces.size()), "face"))
-                                                : std::string(" where indices counts nodes")));
+  check_per_face(record, name_of(record, key), formulas, selection.listed, static_cast<int>(selection.faces.size()));
   const bool expressions = !constant(formulas);
-  if (expressions && formulas.size() != 3 && formulas.size() != 1)
-    refuse(record, fmt::format("{} has expressions in a list of one number per face; write one expression for all "
-                               "faces, where X, Y and Z tell them apart",
-                               name_of(record, key)));
   fe::FaceLoad load{.name = label(record), .faces = selection.faces};
   const std::vector<Function> parts = functions(record, key);
   load.steady = steady(parts);
@@ -190,9 +169,7 @@ fe::FaceLoad face_load(const Record& record, Key<Formulas> key, const FaceSelect
 
 bool follows(const Record& record, Key<bool> follower, const Formulas& pressure, const Body& body) {
   if (!record.has(follower)) return !body.small_strain;
-  if (record[follower] && pressure.size() == 3)
-    refuse(record, "follower = true has no meaning for a traction vector (three numbers), which keeps its direction");
-  return record[follower];
+  return record[follower] && pressure.size() != 3;
 }
 
 }  // namespace msml::simulation

@@ -9,6 +9,7 @@
 #include "msml/core/formula.hpp"
 #include "operators/simulate/body.hpp"
 #include "operators/simulate/selection.hpp"
+#include "operators/simulate/surroundings.hpp"
 
 namespace msml::simulation {
 
@@ -54,16 +55,29 @@ ConditionFactory supporting_mesh();
 /// All of the above.
 std::vector<ConditionFactory> conditions();
 
-/// What a condition stands beside, as far as it is known.
-struct Surroundings {
-  CellKind kind = CellKind::vertex;  ///< of the elements; vertex: particles
-  std::optional<bool> scalar = {};   ///< the unknown is no displacement
-  const fe::Settings* settings = nullptr;
-};
 /// Throws Error at the condition's place where it has no meaning there: it is of displacements, but the unknown is
-/// scalar, or the other way round; it points out of the plane or the line of the body; it ties a node to itself; it
-/// gives a velocity to what has no inertia.
+/// scalar, or the other way round; it acts on elements, but there are particles; it points out of the plane or the line
+/// of the body; it ties a node to itself; it gives a
+/// velocity to what has no inertia.
 void check_condition(const Record& condition, const Surroundings& around);
+
+/// Throws Error at the condition's place where its numbers do not fit each other or the indices that the scene lists in
+/// place; what other tasks give is not looked at.
+void check_counts(const Record& condition);
+
+/// Throws Error where an initial velocity of the whole body, linear in X, Y and Z, changes volumes that a law keeps.
+/// `alone`: no other initial velocity overwrites it somewhere.
+void check_divergence(const Record& condition, const Surroundings& around, bool alone);
+
+/// Throws Error unless the numbers of an attribute are one vector for all nodes (three numbers or expressions), or
+/// three numbers for each of the nodes that `indices` lists; `listed` < 0: it is not known how many; `of_nodes`: it
+/// counts nodes.
+void check_per_node(const Record& record, const std::string& attribute, const Formulas& formulas, bool of_nodes,
+                    int listed);
+/// The same for pressures: one number or expression, a traction vector, or one number for each face that `indices`
+/// lists.
+void check_per_face(const Record& record, const std::string& attribute, const Formulas& formulas, bool of_faces,
+                    int listed);
 
 /// Attributes that every condition has.
 struct CommonKeys {
