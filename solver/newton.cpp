@@ -120,6 +120,11 @@ bool Newton::indefinite(LinearStatus status) const {
   return status == LinearStatus::not_positive_definite;
 }
 
+bool Newton::unstable_whole() const {
+  const bool odd = equations_.numbering().pressure_of.size() % 2 == 1;
+  return unsymmetric_->negative_determinant() != odd;
+}
+
 Vector Newton::residual(const Increment& increment) const {
   const Kinematics& motion = increment.motion;
   Vector residual = motion.force_share * (forces_.external - forces_.internal - forces_.damping) -
@@ -140,9 +145,8 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   if (choice != Definiteness::always && !insist_definite_) {
     const LinearStatus status = attempt(increment, jump, residual, step);
     // Conjugate gradients notice an indefinite matrix in the solve, a factorisation before it.
-    indefinite_ = whole_taken_ ? unsymmetric_->negative_determinant() : indefinite(status);
-    const bool mixed = equations_.numbering().mixed();
-    if (!indefinite_ || choice == Definiteness::never || mixed) return status;
+    indefinite_ = whole_taken_ ? unstable_whole() : indefinite(status);
+    if (!indefinite_ || choice == Definiteness::never) return status;
   }
   evaluate(increment, u, Want::definite_tangent, true);
   tangent_current_ = false;
@@ -185,8 +189,7 @@ Stop Newton::verdict(const Increment& increment, IncrementResult& result) {
     if (status == LinearStatus::done) status = linear_->probe();
     indefinite_ = indefinite(status);
     // Loads that follow need not be the gradient of anything: what is left to look at is the determinant.
-    if (indefinite_ && followers_ && factor_whole(increment) == LinearStatus::done)
-      indefinite_ = unsymmetric_->negative_determinant();
+    if (indefinite_ && followers_ && factor_whole(increment) == LinearStatus::done) indefinite_ = unstable_whole();
   }
   return indefinite_ ? Stop::indefinite_tangent : Stop::converged;
 }

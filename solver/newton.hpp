@@ -63,9 +63,9 @@ class Newton {
   Newton(const Model& model, const Equations& equations);
 
   /// Runs up to Settings::newton_iterations iterations; with 1, one linear solve and no convergence test.
-  /// The tangent is the law's own; where it is not positive definite, the iteration takes the law's semidefinite one.
-  /// Mixed elements, whose tangent never is, keep it, and search for a smaller residual instead of a smaller energy. A
-  /// static state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
+  /// The tangent is the law's own; where it is not that of a stable equilibrium, the iteration takes the law's
+  /// semidefinite one. Mixed elements search for a smaller residual or slope instead of a smaller energy. A static
+  /// state that is in equilibrium but has an indefinite tangent is unstable: Stop::indefinite_tangent.
   IncrementResult run(const Increment& increment);
   /// The same, first with full steps: near a time step's start they converge where a search along a sliver's sharp
   /// turns only creeps. Where they fail with the line search; where that fails too, walks to the solution along R(u) =
@@ -134,6 +134,9 @@ class Newton {
   double line_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   double residual_search(const Increment& increment, const Vector& direction, const Vector& residual, Vector& u);
   bool indefinite(LinearStatus status) const;
+  /// The determinant of the matrix that factor_whole() took has not the sign that it has at a stable equilibrium, where
+  /// each pressure brings one negative eigenvalue.
+  bool unstable_whole() const;
   bool accepted(const Increment& increment, const Vector& residual, IncrementResult& result);
   /// A length and an energy: of a step, of what is missing, or what these are measured by.
   struct Size {

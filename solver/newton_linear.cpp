@@ -113,7 +113,7 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   pulse();
   LinearStatus status = factor(increment);
   // A pressure that follows an open face makes the symmetric part indefinite long before anything buckles.
-  whole_taken_ = followers_ && status == LinearStatus::not_positive_definite;
+  whole_taken_ = followers_ && indefinite(status);
   if (whole_taken_) status = factor_whole(increment);
   if (status != LinearStatus::done) return status;
   pulse();

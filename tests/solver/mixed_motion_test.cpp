@@ -108,6 +108,43 @@ TEST(MixedElements, BendFarInHardlyMoreIterationsThanPlainOnes) {
   }
 }
 
+// The symmetric part of the tangent counts too many negative eigenvalues long before anything buckles, as in plain
+// elements: the matrix as it is has the sign of its determinant.
+TEST(MixedElements, BendUnderAPressureThatFollowsLikePlainOnes) {
+  Vec3 end[2];
+  for (const bool mixed : {false, true}) {
+    Model model = make_model(box_mesh(8, 2, 2, {6, 1, 1}, CellKind::tet10), {});
+    model.regions[0].law = law_of("neoHookeanMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", 0.3}});
+    model.formulation = mixed ? Formulation::mixed : Formulation::standard;
+    model.settings.load_steps = 4;
+    FaceLoad load{.name = "side", .pressures = {6}, .follower = true};
+    load.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[1] > 1 - 1e-9; });
+    model.steps[0].face_loads = {load};
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    end[mixed] = outcome.state.displacement.row(nearest_point(*model.mesh, {6, 1, 1})).transpose();
+  }
+  EXPECT_LT(end[0][0], -6);                                   // bent to more than a right angle
+  EXPECT_LT((end[1] - end[0]).norm(), 0.02 * end[0].norm());  // both are a coarse mesh's
+}
+
+// At the start the tangent is that of no stable equilibrium; the semidefinite one leads away from there.
+TEST(MixedElements, ReturnToRestFromASqueezedStart) {
+  for (const double nu : {0.3, 0.45, 0.49}) {
+    Model model = make_model(unit_mesh(2, CellKind::tet10), {});
+    model.regions[0].law = law_of("neoHookeanMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", nu}});
+    model.formulation = Formulation::mixed;
+    model.steps[0].gravity = Vec3::Zero();
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; }))};
+    model.initial_displacement = Points::Zero(model.mesh->point_count(), 3);
+    model.initial_displacement.col(0) = -0.3 * model.mesh->points.col(0);
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, Stop::converged) << nu << ": " << outcome.diagnosis;
+    EXPECT_LT(outcome.state.displacement.cwiseAbs().maxCoeff(), 1e-9) << nu;
+  }
+}
+
 TEST(MixedElements, SayThatAnInitialDisplacementLeavesThePressureOfIncompressibleOnesOpen) {
   Model model = let_go(Formulation::mixed, 0.001, 1);
   model.regions[0].law =
