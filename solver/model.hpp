@@ -289,6 +289,8 @@ struct State {
   /// Viscoelastic regions: stored energy per reference volume at the points of history_stress; null too without
   /// Model::stored_energies.
   std::shared_ptr<const std::vector<double>> history_energy = nullptr;
+  /// Mixed elements: like corner_pressure, what acts of it: differs in viscoelastic regions alone.
+  std::vector<double> acting_pressure = {};
   /// The elements that the state was computed with, so that its measures need not prepare them again; may be null.
   std::shared_ptr<const Elements> elements = nullptr;
 };

@@ -18,8 +18,9 @@ std::vector<FieldFacts> with_nodal() {
       {"vonMises", 1, false, "equivalent stress sqrt(3/2 s:s), s the deviator of stress"},
       {"principalStress", 3, false, "eigenvalues of stress, the largest first"},
       {"pressure", 1, false,
-       "minus a third of the trace of stress; of formulation=\"mixed\" at nodes: the unknown, minus the derivative of "
-       "the volumetric energy by its measure of volume, and where regions meet the mean of theirs"},
+       "minus a third of the trace of stress; of formulation=\"mixed\" at nodes: the unknown multiplier, minus the "
+       "derivative of the volumetric energy by its measure of volume, linear in each element; at nodes where regions "
+       "meet the mean of theirs, at a point that of the region around it. pressure_nodal is the same there"},
       {"firstPiola", 9, false, "first Piola stress: force per reference area"},
       {"secondPiola", 6, false, "second Piola stress F^-1 P"},
       {"strain", 6, false,

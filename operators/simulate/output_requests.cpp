@@ -164,7 +164,7 @@ Factory<OutputRequest> energies() {
       "springs and dampers, exact for laws linear in their strain), momentum and angular momentum about the origin, "
       "and in statics the share of the loads. Elastic, kinetic and dissipated energy sum to that of the first state "
       "and "
-      "the work, but for what falls with the time step: with its square for Newmark, generalizedAlpha and undamped "
+      "the work, but for what falls with the time step: with its square for Newmark, generalizedAlpha and "
       "centralDifference, in proportion to it for the others, and where loads or supports jump.");
   tag.build([=](const Record& record) {
     return OutputRequest{.id = file_stem(record, id),

@@ -75,7 +75,11 @@ class ProbeWriter final : public TableWriter {
     for (std::size_t i = 0; i < places_.spots.size(); ++i) {
       row.resize(1);
       if (!places_.distances.empty()) row.push_back(places_.distances[i]);
-      append(field, places_.spots[i], row);
+      const Spot& spot = places_.spots[i];
+      if (fields.is_multiplier(facts_.name))
+        row.push_back(fields.multiplier(spot.element, spot.weights));
+      else
+        append(field, spot, row);
       all.push_back(row);
     }
     return all;

@@ -3,9 +3,12 @@
 #include "operators/simulate/state_fields.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "msml/core/error.hpp"
+#include "solver/elements/assembly.hpp"
 
 namespace msml::simulation {
 namespace {
@@ -114,8 +117,21 @@ std::vector<double> StateFields::nodal(const std::string& name) {
   if (name == "velocity") return rows(state_.velocity);
   if (name == "acceleration") return rows(state_.acceleration);
   if (name == "reaction") return rows(state_.reaction);
-  if (name == "pressure") return state_.pressure;
+  if (is_multiplier(name)) return state_.pressure;
   return recovered(name.substr(0, name.size() - std::string("_nodal").size()));
+}
+
+bool StateFields::is_multiplier(const std::string& name) const {
+  return mixed() && (name == "pressure" || name == "pressure_nodal");
+}
+
+double StateFields::multiplier(int cell, std::span<const double> weights) const {
+  const fe::Numbering& numbering = state_.elements->numbering();
+  const auto found = std::ranges::find(numbering.elements, cell);
+  if (found == numbering.elements.end()) return 0;
+  const auto element = static_cast<std::size_t>(found - numbering.elements.begin());
+  const std::array<double, 10> pressures = fe::element_pressures(numbering, element, state_.acting_pressure);
+  return std::inner_product(weights.begin(), weights.end(), pressures.begin(), 0.0);
 }
 
 Field StateFields::field(const std::string& name) {

@@ -2,6 +2,7 @@
 // The named fields of one state of a simulation.
 #pragma once
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,10 @@ class StateFields {
   Points positions() const;
   /// A field by its name, one of field_names() but "region": values at all points or all cells of the body's mesh.
   Field field(const std::string& name);
+  /// True for the pressure of mixed elements: the unknown, which has a value of its own in each region.
+  bool is_multiplier(const std::string& name) const;
+  /// That pressure at a place in a cell, given by the weights of its ten nodes; 0 in cells without unknowns.
+  double multiplier(int cell, std::span<const double> weights) const;
   /// Adds a field to the points or cells of a mesh with the body's points and cells. "region" adds nothing, since
   /// meshes carry it anyway; scalar problems add "value" in the place of "displacement".
   void add_to(Mesh& mesh, const std::string& name);

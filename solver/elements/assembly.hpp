@@ -61,6 +61,10 @@ Vector to_vector(const Numbering& numbering, const Points& values);
 std::vector<double> to_pressures(const Numbering& numbering, const Vector& values);
 /// The same of each additional node, and back into a vector as to_vector makes it.
 std::vector<double> to_corner_pressures(const Numbering& numbering, const Vector& values);
+/// Pressures at the ten nodes of an element of `elements`, from those of its own region's corners: linear, so that the
+/// interpolation of the ten is that of the four.
+std::array<double, 10> element_pressures(const Numbering& numbering, std::size_t element,
+                                         const std::vector<double>& corner_pressures);
 void put_corner_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values);
 
 /// What an assembly found on its way.

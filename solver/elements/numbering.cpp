@@ -204,6 +204,18 @@ std::vector<double> to_corner_pressures(const Numbering& numbering, const Vector
   return pressures;
 }
 
+std::array<double, 10> element_pressures(const Numbering& numbering, std::size_t element,
+                                         const std::vector<double>& corner_pressures) {
+  constexpr std::size_t edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+  std::array<double, 10> pressures{};
+  for (std::size_t c = 0; c < 4; ++c) {
+    const int node = numbering.pressure_nodes[4 * element + c] - numbering.body_nodes();
+    pressures[c] = corner_pressures[static_cast<std::size_t>(node)];
+  }
+  for (std::size_t m = 0; m < 6; ++m) pressures[4 + m] = 0.5 * (pressures[edges[m][0]] + pressures[edges[m][1]]);
+  return pressures;
+}
+
 void put_corner_pressures(const Numbering& numbering, const std::vector<double>& pressures, Vector& values) {
   for (std::size_t k = 0; k < pressures.size(); ++k)
     values[3 * (numbering.body_nodes() + static_cast<int>(k))] = -pressures[k] / numbering.pressure_scale;

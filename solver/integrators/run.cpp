@@ -13,6 +13,7 @@ namespace msml::fe {
 
 State Run::state() const {
   const Numbering& numbering = equations.numbering();
+  const Vector acting = equations.elements().acting(now.u);
   return {now.time,
           now.step,
           now.increment,
@@ -22,10 +23,11 @@ State Run::state() const {
           to_points(numbering, now.reaction),
           now.energies,
           equations.elements().history_stress(),
-          to_pressures(numbering, equations.elements().acting(now.u)),
+          to_pressures(numbering, acting),
           now.load_factor,
           to_corner_pressures(numbering, now.u),
           equations.elements().history_energy(),
+          to_corner_pressures(numbering, acting),
           equations.shared_elements()};
 }
 

@@ -84,5 +84,38 @@ TEST(Pressure, OfMixedElementsIsTheUnknownAtNodes) {
   EXPECT_NEAR(last[2], expected, 1e-5 * std::abs(expected));  // a mid node
 }
 
+// Two rubbers side by side, glued at x = 0.5 and pulled to L together: both grow thinner alike, and each has its own
+// pressure up to the other, -mu (L^2 - 1/L) / 3.
+TEST(Pressure, AtAPointIsThatOfTheRegionAroundIt) {
+  const Language language;
+  const MeshPtr mesh = std::make_shared<const Mesh>(fe::testing::box_mesh(2, 1, 1, {1, 1, 1}, CellKind::tet10));
+  std::vector<int> sides[2];
+  for (int cell = 0; cell < mesh->cell_count(); ++cell) {
+    double middle = 0;
+    for (int a = 0; a < 4; ++a) middle += mesh->points(mesh->cell(cell)[a], 0) / 4;
+    sides[middle > 0.5].push_back(cell);
+  }
+  const double young[2] = {1000, 4000};
+  for (const char* field : {"pressure", "pressure_nodal"})
+    for (const int side : {0, 1}) {
+      Scene scene =
+          stretched(language, mesh,
+                    language.tag("quadraticTet", "mesh", {{"mesh", mesh}, {"formulation", std::string("mixed")}}), {},
+                    language.tag("probe", "output",
+                                 {{"id", std::string("p")},
+                                  {"point", Numbers{0.45 + 0.1 * side, 0.6, 0.7}},
+                                  {"field", std::string(field)}}));
+      scene.regions.clear();
+      for (const int k : {0, 1})
+        scene.regions.push_back(language.tag(
+            "region", "region", {{"indices", index_set(mesh, Indexed::elements, sides[k])}},
+            {language.tag(
+                "neoHookeanMaterial", "material",
+                {{"youngModulus", young[k]}, {"form", std::string("isochoric")}, {"incompressible", true}})}));
+      const double expected = -young[side] / 3 * (1.2 * 1.2 - 1 / 1.2) / 3;
+      EXPECT_NEAR(csv_rows(written(language, scene, "p.csv")).back()[1], expected, 1e-6 * std::abs(expected)) << field;
+    }
+}
+
 }  // namespace
 }  // namespace msml::test

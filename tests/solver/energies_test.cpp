@@ -58,6 +58,7 @@ TEST(Energies, ImbalanceOfTheOtherMethodsFallsWithTheirOrder) {
   EXPECT_NEAR(order(Integrator::implicit_euler, 0), 1, 0.15);
   EXPECT_NEAR(order(Integrator::symplectic_euler, 0), 1, 0.15);
   EXPECT_NEAR(order(Integrator::central_difference, 0), 2, 0.15);
+  EXPECT_NEAR(order(Integrator::central_difference, 0.02), 2, 0.15);
   EXPECT_NEAR(order(Integrator::forward_euler, 0.05), 1, 0.15);
 }
 
@@ -103,7 +104,6 @@ TEST(Energies, ImbalanceBesideSupportsThatMoveByFunctionsIsOfSecondOrder) {
   for (const Integrator integrator :
        {Integrator::newmark, Integrator::generalized_alpha, Integrator::central_difference})
     for (const double alpha : {0.0, 1.0}) {
-      if (integrator == Integrator::central_difference && alpha > 0) continue;  // damped with a velocity before
       const double coarse = imbalance(shaken_model(integrator, alpha, 200)),
                    fine = imbalance(shaken_model(integrator, alpha, 400));
       EXPECT_NEAR(std::log2(coarse / fine), 2, 0.15) << name(integrator) << " " << alpha;
