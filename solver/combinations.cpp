@@ -10,6 +10,7 @@
 
 #include "msml/core/error.hpp"
 #include "solver/materials/law.hpp"
+#include "solver/materials/plane_stress.hpp"
 
 namespace msml::fe {
 namespace {
@@ -91,6 +92,14 @@ void check_split(const Model& model, const Region& region, const std::optional<S
                     region.name, region.law->name(), split->modulus[0], formulation)));
 }
 
+void check_plane_stress(const Region& region, const Tell& tell) {
+  try {
+    make_plane_stress(region.law);
+  } catch (const Error& error) {
+    tell(Error(fmt::format("region '{}': {}", region.name, error.what())));
+  }
+}
+
 const char* unknown_of(const Law& law) { return law.components() == 1 ? "a scalar unknown" : "displacements"; }
 
 bool scalar(const Model& model) {
@@ -151,6 +160,7 @@ void check_law(const Model& model, const Region& region, const Tell& tell) {
         Error(fmt::format("region '{}': plane=\"stress\" is about displacements, which {} does not have; leave plane "
                           "out",
                           region.name, region.law->name())));
+  if (model.plane == Plane::stress && region.law->components() > 1) check_plane_stress(region, tell);
   if (splits(model.formulation)) check_split(model, region, split, tell);
 }
 

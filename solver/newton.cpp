@@ -171,7 +171,7 @@ void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations
 bool Newton::exploded(const IncrementResult& result) const {
   const std::vector<double>& norms = result.residuals;
   // Full steps are tried first, and given up early.
-  return norms.back() > 1e12 * (norms.front() + result.scale) ||
+  return norms.back() > 1e12 * (norms.front() + result.early_scale) ||
          (!searching_ && norms.back() > 1e8 * std::max(norms[0], norms[1]));
 }
 

@@ -27,6 +27,7 @@ struct IncrementResult {
   std::vector<double> residuals;  ///< norm of the free residual after each iteration, the first before any
   double scale = 0;               ///< largest of the norms of external, internal, inertia and reaction forces
   double largest_scale = 0;       ///< of the scales over the iterations
+  double early_scale = 0;         ///< of the scales up to the first iteration
   int worst_element = -1;         ///< cell id: the smallest det F
   double worst_J = 0;
   int worst_node = -1;  ///< mesh point with the largest residual

@@ -44,6 +44,7 @@ void Newton::note_residual(const Increment& increment, const Vector& residual, I
   const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
   result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
   result.largest_scale = std::max({result.largest_scale, result.scale, increment.met});
+  if (result.residuals.size() <= 2) result.early_scale = result.largest_scale;
   result.worst_element = forces_.found.smallest_J_element;
   result.worst_J = forces_.found.smallest_J;
   double worst = -1;

@@ -2,14 +2,32 @@
 // Finds the stretch across the plane and condenses the tangent.
 #include "solver/materials/plane_stress.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+
+#include "msml/core/error.hpp"
 
 namespace msml::fe {
 namespace {
 
 constexpr int packed(int i, int j) { return i >= j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i; }
 constexpr int across = 8;  // 3 i + k of F_33
+
+/// Whether the shears of P across the plane are zero where F has none.
+bool keeps_plane(const Law& law) {
+  Gradients H{};  // stretched in every direction of space, so that fibres that bear tension alone are seen
+  for (const auto& [i, k, value] : {std::tuple(0, 0, 0.3), {1, 1, 0.2}, {2, 2, 0.1}, {0, 1, 0.1}, {1, 0, 0.05}})
+    H(i, k) += value;
+  Response response;
+  law.evaluate(Want::stress, {&H, 1}, {&response, 1});
+  for (const int shear : {2, 5, 6, 7})
+    for (int lane = 0; lane < lanes; ++lane)
+      if (std::abs(response.P.c[shear][lane]) > 1e-9 * law.shear_modulus()) return false;
+  return true;
+}
 
 /// A step that changes the thickness by half at most.
 double bounded(double step, double thickness) {
@@ -107,6 +125,11 @@ Thinning thinning(const Law& law, const Gradients& gradient) {
 }
 
 std::shared_ptr<const Law> make_plane_stress(std::shared_ptr<const Law> law) {
+  if (!keeps_plane(*law))
+    throw Error(
+        fmt::format("fibres of {} are oblique to the plane, so that its free faces would bear shear under "
+                    "plane=\"stress\": lay them in the plane or across it, or mesh the plate with tetrahedra",
+                    law->name()));
   return std::make_shared<const PlaneStress>(std::move(law));
 }
 

@@ -11,7 +11,7 @@ namespace msml::fe {
 /// zero and the tangent is condensed, A - A_33 A_33^T / A_3333 (de Borst 1991, doi 10.1108/eb023825). H_33 is found by
 /// Newton's method at each point, safeguarded by halved steps, from H_33 of the gradients where it helps. Works for
 /// laws that keep those four shears of P zero in plane deformations: isotropic ones, and fibres in the plane or across
-/// it.
+/// it. Throws Error for others.
 std::shared_ptr<const Law> make_plane_stress(std::shared_ptr<const Law> law);
 
 /// F_33 of a law under plane stress, and its derivative by F_ik of the plane at 3 i + k.

@@ -48,6 +48,17 @@ TEST(CombinationLanguage, ADirectionIsThreeNumbersOrAName) {
   EXPECT_THAT(of_fiber("1, 0, sin("), HasSubstr("'sin('"));
 }
 
+TEST(CombinationLanguage, FibresOfAPlateInPlaneStressAreNotOblique) {
+  const auto said = [](const std::string& fibre) {
+    return faults({.mesh = R"(<linearTriangle mesh="${b}" plane="stress"/>)",
+                   .region = "<guccioneMaterial C=\"1\" bf=\"2\" bt=\"1\" bfs=\"1\" bulkModulus=\"9\" fiber=\"" +
+                             fibre + "\"/>"});
+  };
+  EXPECT_EQ(said("1 1 0"), "");
+  EXPECT_EQ(said("0 0 1"), "");
+  EXPECT_THAT(said("1 0 1"), HasSubstr("fibres of guccioneMaterial are oblique to the plane"));
+}
+
 TEST(CombinationLanguage, ListsInPlaceAreCounted) {
   EXPECT_THAT(of_constraint(R"(<springMeshToFixed stiffness="1" fixedPoints="0 0 0 1 1 1" movingPoints="0 0 0"/>)"),
               HasSubstr("s.xml:6: springMeshToFixed: movingPoints has 1 point, but fixedPoints 2"));
