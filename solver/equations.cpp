@@ -71,8 +71,8 @@ void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, F
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
   for (const ActingLoads& acting : loads)
     if (!acting.leaving)
-      forces.found.energy +=
-          add_springs(acting.set->springs, acting.time, X_, u, want == Want::definite_tangent, forces.internal, tangent);
+      forces.found.energy += add_springs(acting.set->springs, acting.time, X_, u, want == Want::definite_tangent,
+                                         forces.internal, tangent);
   evaluate_loads(u, loads, forces, followers);
 }
 

@@ -63,11 +63,11 @@ inline std::shared_ptr<const Law> law_of(const std::string& tag, const std::map<
   throw Error("no material " + tag);
 }
 
-/// Every law of displacements in the registry, once for each combination of text choices.
-inline std::vector<NamedLaw> all_laws() {
+/// Every law of displacements in the registry, once for each combination of text choices; `set` as in sample_record.
+inline std::vector<NamedLaw> all_laws(const std::map<std::string, Value>& set = {}) {
   std::vector<NamedLaw> laws;
   for (const MaterialFactory& material : materials()) {
-    std::vector<std::pair<std::string, Record>> variants{{material.tag(), sample_record(material)}};
+    std::vector<std::pair<std::string, Record>> variants{{material.tag(), sample_record(material, set)}};
     for (std::size_t s = 0; s < material.slots().size(); ++s) {
       const Slot& slot = material.slots()[s];
       if (slot.choices.empty()) continue;
