@@ -5,6 +5,7 @@
 #include "solver/elements/assembly.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
+#include "tests/solver/relaxation.hpp"
 
 namespace msml::fe {
 namespace {
@@ -52,12 +53,6 @@ Vector deformed(const Elements& elements, double size) {
 }
 
 /// Internal forces of the nodes of the body.
-Vector force_at(const Elements& elements, const Vector& u) {
-  Vector force = Vector::Zero(u.size());
-  elements.add_internal(u, Want::stress, force, nullptr);
-  return force.head(3 * elements.numbering().body_nodes());
-}
-
 // S = G(t) S_e while u, and with mixed elements the elastic pressure, stay.
 TEST(PronyElements, RelaxAsTheSeriesSays) {
   for (const Way& way : ways)
@@ -66,18 +61,7 @@ TEST(PronyElements, RelaxAsTheSeriesSays) {
       model.regions[0].law = law;
       const auto elements = make_elements(model);
       const Vector u = deformed(*elements, 0.05);
-      elements->begin_step(0);
-      const Vector instant = force_at(*elements, u);
-      elements->end_step(u);
-      const double steps[] = {0.03, 0.07, 0.25, 0.15, 0.5}, wanted[] = {0, .79133132, 0, .62332752, .57358951};
-      for (std::size_t k = 0; k < 5; ++k) {
-        elements->begin_step(steps[k]);
-        const Vector force = force_at(*elements, u);
-        elements->end_step(u);
-        if (wanted[k] == 0) continue;
-        // The numbers' last digit.
-        EXPECT_LT((force - wanted[k] * instant).norm(), 6e-9 * instant.norm()) << way.name << " " << law->name();
-      }
+      expect_relaxation(*elements, u, way.name + (" " + law->name()));
     }
 }
 

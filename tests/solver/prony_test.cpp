@@ -7,6 +7,7 @@
 #include "solver/elements/assembly.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
+#include "tests/solver/relaxation.hpp"
 
 namespace msml::fe {
 namespace {
@@ -30,12 +31,6 @@ Vector deformed(const Elements& elements, const Model& model, double size) {
   return u;
 }
 
-Vector force_at(const Elements& elements, const Vector& u) {
-  Vector force = Vector::Zero(u.size());
-  elements.add_internal(u, Want::stress, force, nullptr);
-  return force;
-}
-
 // Relaxation after a step strain is G(t), whatever the time steps and the law: S = G(t) S_e while F stays.
 TEST(Prony, RelaxesAsTheSeriesSays) {
   for (const CellKind kind : every_kind)
@@ -43,18 +38,7 @@ TEST(Prony, RelaxesAsTheSeriesSays) {
       const Model model = prony_model(kind, strain);
       const auto elements = make_elements(model);
       const Vector u = deformed(*elements, model, 0.05);
-      elements->begin_step(0);
-      const Vector instant = force_at(*elements, u);
-      elements->end_step(u);
-      const double steps[] = {0.03, 0.07, 0.25, 0.15, 0.5}, wanted[] = {0, .79133132, 0, .62332752, .57358951};
-      for (std::size_t k = 0; k < 5; ++k) {
-        elements->begin_step(steps[k]);
-        const Vector force = force_at(*elements, u);
-        elements->end_step(u);
-        if (wanted[k] == 0) continue;
-        EXPECT_LT((force - wanted[k] * instant).norm(), 6e-9 * instant.norm())
-            << name(kind);  // the numbers' last digit
-      }
+      expect_relaxation(*elements, u, name(kind));
     }
 }
 
