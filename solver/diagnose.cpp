@@ -2,12 +2,20 @@
 // Says in plain words why a run stopped and what to try.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/integrators/stepper.hpp"
 
 namespace msml::fe {
 namespace {
+
+/// Newmark's average acceleration balances the pressures of incompressible regions at the ends of steps alone: between
+/// large motions they swing from step to step, and no smaller one helps.
+bool pressures_swing(const Model& model) {
+  return model.settings.integrator == Integrator::newmark &&
+         std::ranges::any_of(model.regions, [](const Region& region) { return region.law->incompressible(); });
+}
 
 std::string advice(const Run& run, const IncrementResult& result) {
   const bool loaded_in_parts = run.model.settings.integrator == Integrator::static_;
@@ -28,6 +36,9 @@ std::string advice(const Run& run, const IncrementResult& result) {
     case Stop::linear_solver_limit:
       return "try linearSolver=\"direct\", another preconditioner, a better mesh or poissonRatio further from 0.5";
     case Stop::step_too_large:
+      if (pressures_swing(run.model))
+        return "the pressures of incompressible regions swing under Newmark's method: take "
+               "timeIntegration=\"generalizedAlpha\" or \"dynamicImplicitEuler\"";
       return loaded_in_parts ? "take more loadSteps, or adaptiveStep=\"true\""
                              : "take dt as small as that, or adaptiveStep=\"true\"";
     case Stop::bad_element:

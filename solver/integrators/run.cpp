@@ -93,7 +93,8 @@ void Run::settle_pressures() {
   if (newton.settle_pressures(now.u) > 0)
     outcome.notes.push_back(
         "the initial displacement says nothing of the pressure in incompressible regions: the first state has none "
-        "there, and its stress and acceleration are without it");
+        "there, and its stress and acceleration are without it. If it changes their volume, the first step takes that "
+        "back, and the energy jumps");
 }
 
 bool Run::start_at_rest() {
