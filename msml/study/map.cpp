@@ -23,6 +23,10 @@ constexpr std::array<Look, 6> looks{{{"accurate", "#009E73"},
                                      {"inaccurate, warned", "#0072B2"},
                                      {"stopped, said so", "#56B4E9"},
                                      {"wrong, unsaid", "#D55E00"}}};
+/// Of runs that were not begun, as their reference failed.
+constexpr Look unknown{"no reference", "#DDDDDD"};
+
+bool without_reference(const Table& table, std::size_t row) { return table.text(row, "status") == "no reference"; }
 
 /// The distinct values of a column that can be shown, ascending.
 std::vector<double> values_of(const Table& table, const std::string& column, bool log) {
@@ -82,14 +86,18 @@ std::size_t place(const std::vector<double>& values, double value) {
   return static_cast<std::size_t>(std::lower_bound(values.begin(), values.end(), value) - values.begin());
 }
 
-std::string legend() {
+/// What the colours mean; of `unknown` only where a run has it.
+std::string legend(const Table& table) {
+  std::vector<Look> shown(looks.begin(), looks.end());
+  for (std::size_t row = 0; row < table.rows.size() && shown.size() == looks.size(); ++row)
+    if (without_reference(table, row)) shown.push_back(unknown);
   std::string text;
-  for (std::size_t i = 0; i < looks.size(); ++i) {
+  for (std::size_t i = 0; i < shown.size(); ++i) {
     const double y = 0.95 - 0.07 * static_cast<double>(i);
     text += fmt::format(
         "set object rectangle from graph 1.03,{:.3f} to graph 1.06,{:.3f} noclip fs solid noborder fc rgb "
         "\"{}\"\nset label \"{}\" at graph 1.075,{:.3f} left\n",
-        y - 0.02, y + 0.02, looks[i].colour, looks[i].name, y);
+        y - 0.02, y + 0.02, shown[i].colour, shown[i].name, y);
   }
   return text;
 }
@@ -112,14 +120,16 @@ std::string map_script(const Table& all, const Chart& chart, const ChartStyle& s
   const auto x = borders(xs, log_x), y = borders(ys, log_y);
   const Frame frame{{log_x, x.front(), x.back()}, {log_y, y.front(), y.back()}};
   std::string text = chart_head(chart, frame, style, 24) + value_tics(xs, "x", log_x) + value_tics(ys, "y", log_y) +
-                     tics + legend() + limit_lines(chart, frame.x);
+                     tics + legend(table) + limit_lines(chart, frame.x);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const std::size_t i = place(xs, table.number(row, chart.x)), k = place(ys, table.number(row, chart.y));
-    if (i >= xs.size() || k >= ys.size() || table.text(row, "status") == "no reference") continue;  // it never ran
+    if (i >= xs.size() || k >= ys.size()) continue;
+    const Look& look =
+        without_reference(table, row) ? unknown : looks[static_cast<std::size_t>(fate(table, row, chart))];
     text += fmt::format(
         "set object rectangle from first {:.8g},{:.8g} to first {:.8g},{:.8g} behind fs solid border lc "
         "rgb \"#FFFFFF\" fc rgb \"{}\"\n",
-        x[i], y[k], x[i + 1], y[k + 1], looks[static_cast<std::size_t>(fate(table, row, chart))].colour);
+        x[i], y[k], x[i + 1], y[k + 1], look.colour);
   }
   text += theory_lines(chart, frame) + "unset grid\nplot " + theory_plots(chart);
   return text + fmt::format("{:.8g} with lines lc rgb \"#FFFFFF\" lw 0 notitle\n", 10 * frame.y.high);

@@ -120,6 +120,17 @@ TEST(Map, ColoursEachRunByItsFate) {
   EXPECT_THAT(script, HasSubstr("plot $theory0 with lines"));
 }
 
+TEST(Map, ShowsWhereTheReferenceFailed) {
+  Table table{{"dt", "k", "error", "status"}, {{"1", "1", "0.01", "done"}, {"10", "1", "", "not converged"}}};
+  Chart chart{.id = "m", .title = "", .x = "dt", .y = "k", .group = {}, .only = {}, .axes = {}, .slopes = {}};
+  chart.color = "error";
+  EXPECT_THAT(gnuplot_script(table, chart, {}), Not(HasSubstr("no reference")));
+  table.rows[1][3] = "no reference";
+  const std::string script = gnuplot_script(table, chart, {});
+  EXPECT_THAT(script, HasSubstr("set label \"no reference\""));
+  EXPECT_THAT(script, HasSubstr("lc rgb \"#FFFFFF\" fc rgb \"#DDDDDD\""));
+}
+
 TEST(Map, WordsStandSideBySide) {
   const Table table{{"law", "load", "error", "status"},
                     {{"log", "1", "0.01", "done"}, {"cubic", "1", "0.01", "done"}, {"log", "10", "0.01", "done"}}};
