@@ -61,7 +61,7 @@ void check_section(const Record& output, const Surroundings& around) {
   if (!around.kind || normal == nullptr || normal->size() != 3) return;
   const int dimension = msml::dimension(*around.kind);
   const Vec3 n((*normal)[0], (*normal)[1], (*normal)[2]);
-  if (n.tail(3 - dimension).norm() > 0)
+  if (std::any_of(normal->begin() + dimension, normal->end(), [](double part) { return part != 0; }))
     refuse(output, fmt::format("the normal {} leaves the {} of the body", place(n),
                                dimension == 1 ? "line (along x)" : "plane (of x and y)"));
 }

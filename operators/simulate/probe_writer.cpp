@@ -26,8 +26,7 @@ struct Places {
   std::vector<double> distances;  ///< of a line: from its start
 };
 
-Places places_of(const Simulation& simulation, const OutputRequest& request, const FieldFacts& facts,
-                 Reporter& reporter) {
+Places places_of(const Simulation& simulation, const OutputRequest& request, Reporter& reporter) {
   const Record& record = *request.record;
   const Body& body = simulation.body;
   Places places;
@@ -113,8 +112,7 @@ std::unique_ptr<OutputWriter> make_probe(const Simulation& simulation, const Out
                                          const std::filesystem::path& folder) {
   const bool mixed = simulation.model.formulation == fe::Formulation::mixed;
   const FieldFacts facts = facts_of(request.fields.front(), mixed);
-  return std::make_unique<ProbeWriter>(simulation, request, facts, places_of(simulation, request, facts, reporter),
-                                       folder);
+  return std::make_unique<ProbeWriter>(simulation, request, facts, places_of(simulation, request, reporter), folder);
 }
 
 }  // namespace msml::simulation

@@ -170,7 +170,7 @@ void add_follower(const ActingLoads& loads, const FollowerFace& face, const Vect
         const Mat3 block = pressure * point.weight * point.N[a] * (R * point.dN[b][1] - S * point.dN[b][0]);
         double* out =
             matrix->values.data() + 9 * static_cast<std::size_t>(matrix->pattern->find(face.nodes[a], face.nodes[b]));
-        for (int k = 0; k < 9; ++k) out[k] += block(k / 3, k % 3);
+        for (int i = 0; i < 9; ++i) out[i] += block(i / 3, i % 3);
       }
   });
 }
