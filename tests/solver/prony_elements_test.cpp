@@ -52,7 +52,6 @@ Vector deformed(const Elements& elements, double size) {
   return u;
 }
 
-/// Internal forces of the nodes of the body.
 // S = G(t) S_e while u, and with mixed elements the elastic pressure, stay.
 TEST(PronyElements, RelaxAsTheSeriesSays) {
   for (const Way& way : ways)
