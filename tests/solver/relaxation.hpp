@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A step of strain that is held, with the series of reference numbers: g = (0.3, 0.2), tau = (0.1, 1).
+// What tests of viscoelastic elements share: a step of strain that is held, with g = (0.3, 0.2), tau = (0.1, 1);
+// slopes.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -14,6 +15,19 @@ inline Vector force_at(const Elements& elements, const Vector& u) {
   Vector force = Vector::Zero(u.size());
   elements.add_internal(u, Want::stress, force, nullptr);
   return force.head(3 * elements.numbering().body_nodes());
+}
+
+/// Slopes of energy and force along one unknown, by central differences of step h.
+struct Slopes {
+  double energy;
+  Vector force;
+};
+inline Slopes slopes_along(const Elements& elements, const Vector& u, Eigen::Index unknown, double h) {
+  Vector up = u, down = u, above = Vector::Zero(u.size()), below = above;
+  up[unknown] += h, down[unknown] -= h;
+  const double gained = elements.add_internal(up, Want::stress, above, nullptr).energy -
+                        elements.add_internal(down, Want::stress, below, nullptr).energy;
+  return {gained / (2 * h), (above - below) / (2 * h)};
 }
 
 /// S = G(t) S_e while the strain stays, whatever the time steps and the law: .79133132 at .1, .62332752 at .5,
