@@ -117,5 +117,33 @@ TEST(Pressure, AtAPointIsThatOfTheRegionAroundIt) {
     }
 }
 
+// A block between walls under gravity does not move, whatever it is: its pressure is that of water, rho g (1 - z).
+TEST(Pressure, AtAPointIsLinearInEachElement) {
+  const Language language;
+  const MeshPtr mesh = std::make_shared<const Mesh>(fe::testing::box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet10));
+  for (const Numbers& point : {Numbers{0.3, 0.6, 0.7}, Numbers{0.8, 0.1, 0.2}, Numbers{0.5, 0.5, 0.5}}) {
+    Scene scene =
+        stretched(language, mesh,
+                  language.tag("quadraticTet", "mesh", {{"mesh", mesh}, {"formulation", std::string("mixed")}}), {},
+                  language.tag("probe", "output",
+                               {{"id", std::string("p")}, {"point", point}, {"field", std::string("pressure")}}));
+    scene.regions = {of_region(
+        language, mesh,
+        {language.tag("neoHookeanMaterial", "material",
+                      {{"youngModulus", 1000.0}, {"form", std::string("isochoric")}, {"incompressible", true}}),
+         language.tag("mass", "mass", {{"massDensity", 2.0}})})};
+    scene.constraints.pop_back();
+    for (int axis : {0, 1}) {
+      Numbers normal{0, 0, 0};
+      normal[static_cast<std::size_t>(axis)] = 1;
+      scene.constraints.push_back(
+          condition(language, "symmetryPlane", {{"indices", points_at(mesh, axis, 1)}, {"normal", normal}}));
+    }
+    scene.steps = {language.tag("step", "step", {{"gravity", Numbers{0, 0, -10}}})};
+    const double expected = 20 * (1 - point[2]);
+    EXPECT_NEAR(csv_rows(written(language, scene, "p.csv")).back()[1], expected, 1e-9 * 20);
+  }
+}
+
 }  // namespace
 }  // namespace msml::test

@@ -180,9 +180,27 @@ TEST(Materials, TakeEntriesOfListsFromCellFields) {
   EXPECT_THAT(fault("mu[=E"), HasSubstr("'mu[' is no number of mu"));
   EXPECT_THAT(fault("bulkModulus[1]=E"), HasSubstr("which is one number: leave out the brackets"));
   EXPECT_THAT(fault("mu=E"), HasSubstr("mu is taken from the cell field 'E', which has 1 component instead of 2"));
+  EXPECT_THAT(fault("mu=E mu[2]=E"), HasSubstr("fields names mu[2] twice"));
+  EXPECT_THAT(fault("mu[2]=E mu[2]=E"), HasSubstr("fields names mu[2] twice"));
+  EXPECT_EQ(fault("mu[1]=E mu[2]=E"), "no error");
   EXPECT_THAT(
       message(language, bar(language, "polynomialMaterial", with(polynomial, "fields", std::string("terms[1]=E")))),
       HasSubstr("terms"));
+}
+
+// What numbers must fulfil together is asked in every element before the run: the powers are 1 0, but 0.5 0 in the
+// last.
+TEST(Materials, AreMadeInEveryElementBeforeTheRun) {
+  const Language language;
+  Scene scene =
+      bar(language, "polynomialMaterial",
+          {{"terms", Formulas{1.0, 0.0, 9.0}}, {"bulkModulus", 500.0}, {"fields", std::string("terms[1]=power")}});
+  auto mesh = std::make_shared<Mesh>(*scene.mesh);
+  mesh->cell_fields.push_back({.name = "power", .components = 1, .values = std::vector<double>(12, 1.0)});
+  scene.mesh = mesh;
+  EXPECT_EQ(message(language, scene), "no error");
+  mesh->cell_fields.back().values.back() = 0.5;
+  EXPECT_THAT(message(language, scene), HasSubstr("terms holds the powers 0.5 0; powers are whole numbers"));
 }
 
 TEST(Guccione, MayHaveASheetWhichChangesNothing) {
