@@ -78,18 +78,20 @@ bool wants_energy(const OutputRequest& output) {
 
 }  // namespace
 
-void check_gravity(const Record& step, bool scalar, CellKind kind) {
+void check_gravity(const Record& step, bool scalar, CellKind kind, const fe::Tell& tell) {
   const int slot = step.description->find("gravity");
   if (slot < 0 || !step.given[static_cast<std::size_t>(slot)]) return;
   const Formulas& gravity = step[Key<Formulas>{slot}];
   const auto zero = [](const Formula& g) { return g.constant() && g.number == 0; };
   if (scalar && !std::all_of(gravity.begin(), gravity.end(), zero))
-    refuse(step,
-           "gravity has no meaning where the unknown is a number (diffusionMaterial): leave it out, or take 0 0 0");
+    return tell(fault_of(
+        step, "gravity has no meaning where the unknown is a number (diffusionMaterial): leave it out, or take 0 0 0"));
   const int axes = kind == CellKind::vertex ? 3 : dimension(kind);
-  if (!std::all_of(gravity.begin() + axes, gravity.end(), zero))
-    refuse(step, fmt::format("gravity has a part along {}, but {}: write 0 there", "?yz"[axes],
-                             axes == 1 ? "lines move along x alone" : "plane bodies move along x and y alone"));
+  for (std::size_t k = static_cast<std::size_t>(axes); k < gravity.size(); ++k)
+    if (!zero(gravity[k]))
+      tell(fault_of(step,
+                    fmt::format("gravity has a part along {}, but {}: write 0 there", "xyz"[k],
+                                axes == 1 ? "lines move along x alone" : "plane bodies move along x and y alone")));
 }
 
 Simulation build_model(const Record& args, Reporter& reporter, int threads) {

@@ -30,9 +30,9 @@ Simulation build_model(const Record& args, Reporter& reporter, int threads);
 /// A body of particles has point masses instead; see build_masses.
 std::vector<fe::Region> build_regions(const std::vector<const Record*>& records, const Body& body, Reporter& reporter);
 
-/// Throws Error at the step's place where it gives a gravity other than 0 to a scalar problem, or along an axis that
+/// Tells, at the step's place, where it gives a gravity other than 0 to a scalar problem, or along an axis that
 /// the elements (vertex: particles) do not move along.
-void check_gravity(const Record& step, bool scalar, CellKind kind);
+void check_gravity(const Record& step, bool scalar, CellKind kind, const fe::Tell& tell = fe::raise);
 
 /// Throws Error at the region's place where its indices, listed in place, count faces.
 void check_region_indices(const Record& region);

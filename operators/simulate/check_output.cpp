@@ -33,37 +33,42 @@ std::string reason(const Words& wrong, const Surroundings& around) {
   return verb + " of scalar problems (diffusionMaterial): a solid has displacement";
 }
 
-void check_fields(const Record& output, const char* attribute, const Words& fields, const Surroundings& around) {
+/// False where it is told.
+bool check_fields(const Record& output, const char* attribute, const Words& fields, const Surroundings& around,
+                  const fe::Tell& tell) {
   Words wrong;
   std::ranges::copy_if(fields, std::back_inserter(wrong), [&](const auto& f) { return !has_meaning(f, around); });
   if (!wrong.empty())
-    refuse(output, fmt::format("{}: {} {}", attribute, fmt::join(wrong, ", "), reason(wrong, around)));
+    tell(fault_of(output, fmt::format("{}: {} {}", attribute, fmt::join(wrong, ", "), reason(wrong, around))));
+  return wrong.empty();
 }
 
-void check_probe(const Record& output, const Surroundings& around) {
+void check_probe(const Record& output, const Surroundings& around, const fe::Tell& tell) {
   const std::string field = text_of(output, "field");
   if (field.empty()) return;
   if (around.scalar == true && field == "displacement")
-    refuse(output, "field: displacement is 0 where the unknown is a number (diffusionMaterial): take field=\"value\"");
-  check_fields(output, "field", {field}, around);
+    tell(fault_of(output,
+                  "field: displacement is 0 where the unknown is a number (diffusionMaterial): take field=\"value\""));
+  const bool sound = check_fields(output, "field", {field}, around, tell);
   if (around.kind == CellKind::vertex && (given(output, "point") || given(output, "along")))
-    refuse(output, "particles have no inside: take indices instead of a point");
-  if (given(output, "indices") && around.kind && !facts_of(field, around.mixed).nodal)
-    refuse(output, fmt::format("field {} is given at elements; a probe at nodes takes {}, one at a point both", field,
-                               field == "J" || field == "region" ? "fields of nodes" : field + "_nodal"));
+    tell(fault_of(output, "particles have no inside: take indices instead of a point"));
+  if (sound && given(output, "indices") && around.kind && !facts_of(field, around.mixed).nodal)
+    tell(
+        fault_of(output, fmt::format("field {} is given at elements; a probe at nodes takes {}, one at a point both",
+                                     field, field == "J" || field == "region" ? "fields of nodes" : field + "_nodal")));
 }
 
-void check_section(const Record& output, const Surroundings& around) {
-  if (around.kind == CellKind::vertex) refuse(output, "particles have no sections");
-  if (around.scalar == true) refuse(output, "a scalar problem has no forces");
+void check_section(const Record& output, const Surroundings& around, const fe::Tell& tell) {
+  if (around.kind == CellKind::vertex) return tell(fault_of(output, "particles have no sections"));
+  if (around.scalar == true) return tell(fault_of(output, "a scalar problem has no forces"));
   const auto* normal =
       std::get_if<std::vector<double>>(&output.values[static_cast<std::size_t>(output.description->find("normal"))]);
   if (!around.kind || normal == nullptr || normal->size() != 3) return;
   const int dimension = msml::dimension(*around.kind);
   const Vec3 n((*normal)[0], (*normal)[1], (*normal)[2]);
   if (std::any_of(normal->begin() + dimension, normal->end(), [](double part) { return part != 0; }))
-    refuse(output, fmt::format("the normal {} leaves the {} of the body", place(n),
-                               dimension == 1 ? "line (along x)" : "plane (of x and y)"));
+    tell(fault_of(output, fmt::format("the normal {} leaves the {} of the body", place(n),
+                                      dimension == 1 ? "line (along x)" : "plane (of x and y)")));
 }
 
 }  // namespace
@@ -78,15 +83,15 @@ bool has_meaning(const std::string& field, const Surroundings& around) {
   return around.scalar != false || base != "value";
 }
 
-void check_output(const Record& output, const Surroundings& around) {
+void check_output(const Record& output, const Surroundings& around, const fe::Tell& tell) {
   const std::string& tag = output.tag();
   if (tag == "result" && given(output, "fields"))
     if (const auto* fields =
             std::get_if<Words>(&output.values[static_cast<std::size_t>(output.description->find("fields"))]))
-      check_fields(output, "fields", *fields, around);
-  if (tag == "probe") check_probe(output, around);
-  if (tag == "section") check_section(output, around);
-  if (tag == "volume" && around.kind == CellKind::vertex) refuse(output, "particles have no volume");
+      check_fields(output, "fields", *fields, around, tell);
+  if (tag == "probe") check_probe(output, around, tell);
+  if (tag == "section") check_section(output, around, tell);
+  if (tag == "volume" && around.kind == CellKind::vertex) tell(fault_of(output, "particles have no volume"));
 }
 
 }  // namespace msml::simulation

@@ -12,9 +12,9 @@ namespace msml::simulation {
 /// and there are particles.
 bool has_meaning(const std::string& field, const Surroundings& around);
 
-/// Throws Error at the place of an output request that has no meaning there: for one of these fields, for a field of
-/// elements at nodes, for places in particles, and for sections across particles, scalar problems or the plane of a
-/// body. Fields that the scene leaves to the defaults are not looked at, but for those of a probe.
-void check_output(const Record& output, const Surroundings& around);
+/// Tells, at the place of an output request, each reason why it has no meaning there: for one of these fields, for a
+/// field of elements at nodes, for places in particles, and for sections across particles, scalar problems or the plane
+/// of a body. Fields that the scene leaves to the defaults are not looked at, but for those of a probe.
+void check_output(const Record& output, const Surroundings& around, const fe::Tell& tell = fe::raise);
 
 }  // namespace msml::simulation

@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 
+#include "msml/core/faults.hpp"
 #include "msml/core/silent_reporter.hpp"
 #include "operators/simulate/build_model.hpp"
 #include "operators/simulate/check_output.hpp"
@@ -31,13 +32,13 @@ Report at(const Record& record, const Report& fault) {
   };
 }
 
-/// Hands what `check` throws to `fault`.
+/// Hands what `check` throws to `fault`, each line by itself.
 template <class Check>
 void attempt(const Record& record, const Report& fault, const Check& check) {
   try {
     check();
   } catch (const Error& error) {
-    at(record, fault)(error);
+    for (const Error& line : lines_of(error)) at(record, fault)(line);
   }
 }
 
@@ -148,11 +149,11 @@ void examine_conditions(const Record& args, const Surroundings& around, const Re
       all_of(args, "constraint"), [](const Record* record) { return record->tag() == "initialVelocity"; });
   const std::vector<std::string> steps = step_names(args);
   for (const Record* step : all_of(args, "step"))
-    if (around.kind) attempt(*step, fault, [&] { check_gravity(*step, around.scalar.value_or(false), *around.kind); });
+    if (around.kind) check_gravity(*step, around.scalar.value_or(false), *around.kind, fault);
   for (const Placed& placed : placed_conditions(args)) {
     const Record& condition = *placed.record;
-    attempt(condition, fault, [&] { check_condition(condition, around); });
-    attempt(condition, fault, [&] { check_counts(condition); });
+    check_condition(condition, around, fault);
+    check_counts(condition, fault);
     attempt(condition, fault, [&] { check_divergence(condition, around, velocities == 1); });
     attempt(condition, fault, [&] { check_steps(placed, steps); });
   }
@@ -187,7 +188,7 @@ void examine_outputs(const Record& args, const Surroundings& around, const Repor
     Record request = *record;
     request.values[static_cast<std::size_t>(record->description->find("id"))] = std::string("x");  // judged elsewhere
     if (complete(request)) attempt(*record, fault, [&] { make<OutputRequest>(request); });
-    attempt(*record, fault, [&] { check_output(*record, around); });
+    check_output(*record, around, fault);
   }
 }
 
@@ -245,7 +246,8 @@ std::vector<Finding> certain(const std::vector<std::vector<Finding>>& fillings) 
 /// What expressions and fields may say, whatever they are worked out to be.
 void examine_expressions(const Record& args, const Report& fault) {
   for (const char* category : {"material", "mass", "prony"})
-    for (const Record* record : all_of(args, category)) attempt(*record, fault, [&] { VaryingRecord::check(*record); });
+    for (const Record* record : all_of(args, category))
+      attempt(*record, fault, [&] { VaryingRecord::check(*record, fault); });
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // The tag that makes a region's law viscoelastic.
 #include <numeric>
 
+#include "msml/core/faults.hpp"
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/settings.hpp"
 #include "solver/fields_attribute.hpp"
@@ -41,11 +42,13 @@ Factory<fe::Prony> prony() {
       "is taken as linear in time over each time step, or each of loadSteps: choose them shorter than tau.");
   tag.build([=](const Record& record) {
     fe::Prony series{numbers(record[g]), numbers(record[tau]), record[given] == "longTerm"};
+    Faults faults(record);
     if (series.g.size() != series.tau.size())
-      refuse(record, fmt::format("g has {} and tau {}: one of each per term",
-                                 counted(static_cast<long long>(series.g.size()), "number"), series.tau.size()));
+      faults.add(fmt::format("prony: g has {} and tau {}: one of each per term",
+                             counted(static_cast<long long>(series.g.size()), "number"), series.tau.size()));
     const double sum = std::accumulate(series.g.begin(), series.g.end(), 0.0);
-    if (sum >= 1) refuse(record, fmt::format("the sum of g = {} is not < 1", sum));
+    if (sum >= 1) faults.add(fmt::format("prony: the sum of g = {} is not < 1", sum));
+    faults.raise();
     return series;
   });
   return tag;

@@ -36,9 +36,11 @@ std::string text_of(const Record& record, const std::string& attribute) {
 
 const IndexSet& indices_of(const Record& record) { return record[Key<IndexSet>{record.description->find("indices")}]; }
 
-void refuse(const Record& record, const std::string& text) {
-  throw Error(fmt::format("{}: {}", record.tag(), text), record.where);
+Error fault_of(const Record& record, const std::string& text) {
+  return Error(fmt::format("{}: {}", record.tag(), text), record.where);
 }
+
+void refuse(const Record& record, const std::string& text) { throw fault_of(record, text); }
 
 std::string located(const Record& record) {
   return record.where.line <= 0 ? record.tag() : fmt::format("line {}: {}", record.where.line, record.tag());

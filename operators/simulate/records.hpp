@@ -22,6 +22,9 @@ std::string text_of(const Record& record, const std::string& attribute);
 /// The attribute `indices` of a tag. Throws Error where it is absent.
 const IndexSet& indices_of(const Record& record);
 
+/// "TAG: TEXT" at the place of the tag.
+Error fault_of(const Record& record, const std::string& text);
+
 /// Throws Error "TAG: TEXT" at the place of the tag.
 [[noreturn]] void refuse(const Record& record, const std::string& text);
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <optional>
 
-#include "solver/model.hpp"
+#include "solver/combinations.hpp"
 
 namespace msml::simulation {
 

@@ -60,19 +60,27 @@ bool overlap(const Named& a, const Named& b) {
   return a.slot == b.slot && a.entry < b.entry + b.count && b.entry < a.entry + a.count;
 }
 
+/// The numbers and the field that a part of the attribute `fields` names: "mu[2]=stiffness".
+Named named_by(const Record& record, const std::string& part) {
+  const std::size_t equals = part.find('=');
+  if (equals == std::string::npos || equals + 1 == part.size())
+    refuse(record, fmt::format("fields: '{}' is no pair attribute=field", part));
+  Named found = numbers_of(record, part.substr(0, equals));
+  found.field = part.substr(equals + 1);
+  return found;
+}
+
 /// The attribute `fields`: "youngModulus=E mu[2]=stiffness".
-std::vector<Named> named_numbers(const Record& record) {
+std::vector<Named> named_numbers(const Record& record, const fe::Tell& tell = fe::raise) {
   std::vector<Named> named;
-  for (const std::string& part : list_parts(text_of(record, "fields"))) {
-    const std::size_t equals = part.find('=');
-    if (equals == std::string::npos || equals + 1 == part.size())
-      refuse(record, fmt::format("fields: '{}' is no pair attribute=field", part));
-    const Named found = numbers_of(record, part.substr(0, equals));
-    if (std::ranges::any_of(named, [&](const Named& other) { return overlap(found, other); }))
-      refuse(record, fmt::format("fields names {} twice", part.substr(0, equals)));
-    named.push_back(found);
-    named.back().field = part.substr(equals + 1);
-  }
+  for (const std::string& part : list_parts(text_of(record, "fields"))) try {
+      const Named found = named_by(record, part);
+      if (std::ranges::any_of(named, [&](const Named& other) { return overlap(found, other); }))
+        refuse(record, fmt::format("fields names {} twice", part.substr(0, part.find('='))));
+      named.push_back(found);
+    } catch (const Error& error) {
+      tell(error);
+    }
   return named;
 }
 
@@ -98,7 +106,7 @@ Formulas formulas_of(const Slot& slot, const Value& value) {
 }
 
 /// A direction that can only be meant as numbers or expressions has three, without faults.
-void check_direction(const Record& record, const Slot& slot, const std::string& text) {
+void check_direction(const Record& record, const Slot& slot, const std::string& text, const fe::Tell& tell) {
   const std::vector<std::string> parts = expression_parts(text);
   const auto problem = [](const std::string& part) { return examine(part).problem; };
   const bool expressions = std::ranges::all_of(parts, [&](const std::string& part) { return problem(part).empty(); });
@@ -108,26 +116,26 @@ void check_direction(const Record& record, const Slot& slot, const std::string& 
   if (!list && !number && (!expressions || parts.size() == 1)) return;  // the name of a field
   for (const std::string& part : parts)
     if (!problem(part).empty())
-      refuse(record, fmt::format("{} = '{}': '{}': {}", slot.name, text, part, problem(part)));
+      return tell(fault_of(record, fmt::format("{} = '{}': '{}': {}", slot.name, text, part, problem(part))));
   if (parts.size() != 3)
-    refuse(record, fmt::format("{} = '{}' has {}; a direction has 3, or is the name of a cell field of the mesh",
-                               slot.name, text, counted(static_cast<long long>(parts.size()), "number")));
+    tell(fault_of(record, fmt::format("{} = '{}' has {}; a direction has 3, or is the name of a cell field of the mesh",
+                                      slot.name, text, counted(static_cast<long long>(parts.size()), "number"))));
 }
 
 std::string direction_text(double x, double y, double z) { return fmt::format("{} {} {}", x, y, z); }
 
 }  // namespace
 
-void VaryingRecord::check(const Record& record) {
-  named_numbers(record);
+void VaryingRecord::check(const Record& record, const fe::Tell& tell) {
+  named_numbers(record, tell);
   const std::vector<Slot>& slots = record.description->slots();
   for (std::size_t s = 0; s < slots.size(); ++s)
     if (const auto* text = std::get_if<std::string>(&record.values[s]); text != nullptr && slots[s].unit == "direction")
-      check_direction(record, slots[s], *text);
-  expressions_of(record);
+      check_direction(record, slots[s], *text, tell);
+  expressions_of(record, tell);
 }
 
-std::vector<VaryingRecord::Expressions> VaryingRecord::expressions_of(const Record& record) {
+std::vector<VaryingRecord::Expressions> VaryingRecord::expressions_of(const Record& record, const fe::Tell& tell) {
   std::vector<Expressions> found;
   const std::vector<Slot>& slots = record.description->slots();
   for (std::size_t s = 0; s < slots.size(); ++s) {
@@ -136,7 +144,8 @@ std::vector<VaryingRecord::Expressions> VaryingRecord::expressions_of(const Reco
     for (const Formula& formula : formulas_of(slots[s], record.values[s])) {
       const Function& f = all.parts.emplace_back(formula, slots[s].name, slots[s].range, record.where);
       if (f.of_time())
-        refuse(record, fmt::format("{} = '{}' depends on t; here X, Y and Z may stand", slots[s].name, formula.text));
+        tell(fault_of(record,
+                      fmt::format("{} = '{}' depends on t; here X, Y and Z may stand", slots[s].name, formula.text)));
       varies = varies || !f.constant();
     }
     if (varies) found.push_back(std::move(all));

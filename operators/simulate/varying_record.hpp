@@ -6,6 +6,7 @@
 #include "msml/core/describe.hpp"
 #include "msml/core/formula.hpp"
 #include "operators/simulate/body.hpp"
+#include "solver/combinations.hpp"
 
 namespace msml::simulation {
 
@@ -14,9 +15,9 @@ namespace msml::simulation {
 /// "youngModulus=E mu[2]=stiffness", where the entries of a list count from 1.
 class VaryingRecord {
  public:
-  /// Throws Error for what is wrong whatever the mesh is: expressions in t, `fields` that is no list of pairs or names
+  /// Tells what is wrong whatever the mesh is: expressions in t, `fields` that is no list of pairs or names
   /// what is no number, or names one twice; directions that are neither three expressions nor a name.
-  static void check(const Record& record);
+  static void check(const Record& record, const fe::Tell& tell = fe::raise);
 
   /// Throws Error also for a field that the mesh does not have or that has the wrong number of components, and for a
   /// value in `elements` that is out of range.
@@ -41,7 +42,7 @@ class VaryingRecord {
     int entry;  ///< of a list, the first that the field holds; -1 of a direction
     const Field* field;
   };
-  static std::vector<Expressions> expressions_of(const Record& record);
+  static std::vector<Expressions> expressions_of(const Record& record, const fe::Tell& tell = fe::raise);
   void find_fields();
   void check_fields(const std::vector<int>& elements) const;
   void put(const Source& source, int element, Record& record) const;

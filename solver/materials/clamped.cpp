@@ -190,15 +190,20 @@ InversionKeys describe_inversion(Description& material) {
   return keys;
 }
 
+void check_inversion(const Record& record, const InversionKeys& keys, bool incompressible, Faults& faults) {
+  if (incompressible && record[keys.inversion] == "clamped")
+    faults.add(
+        fmt::format("{}: inversion = \"clamped\" and incompressible = \"true\" exclude each other. Leave one of "
+                    "them out",
+                    record.tag()));
+}
+
 std::shared_ptr<const Law> with_inversion(const Record& record, const InversionKeys& keys,
                                           std::shared_ptr<const Law> law) {
   if (record[keys.inversion] == "natural") return law;
-  if (law->incompressible())
-    throw Error(
-        fmt::format("{}: inversion = \"clamped\" and incompressible = \"true\" exclude each other. Leave one of "
-                    "them out",
-                    record.tag()),
-        record.where);
+  Faults faults(record);
+  check_inversion(record, keys, law->incompressible(), faults);
+  faults.raise();
   return make_clamped(std::move(law), record[keys.below]);
 }
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <memory>
 
-#include "msml/core/describe.hpp"
+#include "msml/core/faults.hpp"
 #include "solver/materials/law.hpp"
 
 namespace msml::fe {
@@ -21,6 +21,9 @@ struct InversionKeys {
   Key<double> below;
 };
 InversionKeys describe_inversion(Description& material);
+
+/// Adds a fault where a law is to be both incompressible and clamped.
+void check_inversion(const Record& record, const InversionKeys& keys, bool incompressible, Faults& faults);
 
 /// The law, clamped where the scene asks for it. Throws Error if it is incompressible then.
 std::shared_ptr<const Law> with_inversion(const Record& record, const InversionKeys& keys,

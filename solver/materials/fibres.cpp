@@ -27,27 +27,30 @@ Key<std::string> describe_direction(Description& material, const std::string& na
   return material.parameter<std::string>(name, options);
 }
 
-/// The numbers of a direction; a name that no one has replaced by an element's own numbers is refused.
-Direction<Lanes> direction(const Record& record, Key<std::string> key) {
+/// The unit vector of a direction; a name that no one has replaced by an element's own numbers is a fault. Along x
+/// where it is one.
+Direction<Lanes> direction(const Record& record, Key<std::string> key, Faults& faults) {
   const std::string& name = record.description->slots()[static_cast<std::size_t>(key.slot)].name;
   const std::string& text = record[key];
-  const std::vector<double> numbers = direction_numbers(text);
-  if (numbers.empty())
-    throw Error(fmt::format("{}: {} = '{}' is neither three numbers or expressions nor a cell field of the mesh",
-                            record.tag(), name, text),
-                record.where);
-  const double length = std::hypot(numbers[0], numbers[1], numbers[2]);
-  if (!(length > 0) || !std::isfinite(length))
-    throw Error(fmt::format("{}: {} = '{}' has no direction", record.tag(), name, text), record.where);
+  std::vector<double> numbers = direction_numbers(text);
+  const bool none = numbers.empty();
+  if (none)
+    faults.add(fmt::format("{}: {} = '{}' is neither three numbers or expressions nor a cell field of the mesh",
+                           record.tag(), name, text));
+  double length = none ? 0 : std::hypot(numbers[0], numbers[1], numbers[2]);
+  if (!(length > 0) || !std::isfinite(length)) {
+    if (!none) faults.add(fmt::format("{}: {} = '{}' has no direction", record.tag(), name, text));
+    numbers = {1, 0, 0};
+    length = 1;
+  }
   return {lanes_of(numbers[0] / length), lanes_of(numbers[1] / length), lanes_of(numbers[2] / length)};
 }
 
-/// Throws Error where the sheets would lie along the fibres.
-void check_across(const Record& record, const Direction<Lanes>& fiber, const Direction<Lanes>& sheet) {
+/// Adds a fault where the sheets would lie along the fibres.
+void check_across(const Record& record, const Direction<Lanes>& fiber, const Direction<Lanes>& sheet, Faults& faults) {
   const double cosine = std::abs(fiber[0][0] * sheet[0][0] + fiber[1][0] * sheet[1][0] + fiber[2][0] * sheet[2][0]);
   if (cosine > 1 - 1e-9)
-    throw Error(record.tag() + ": sheet lies along fiber; give a direction across the fibres, or leave sheet out",
-                record.where);
+    faults.add(record.tag() + ": sheet lies along fiber; give a direction across the fibres, or leave sheet out");
 }
 
 }  // namespace
@@ -82,8 +85,10 @@ MaterialFactory transversely_isotropic_material() {
   material.note(field_note);
   material.build([=](const Record& record) -> std::shared_ptr<const Law> {
     const Lame lame = lame_of(record[young], record[poisson]);
+    Faults faults(record);
     const TransverselyIsotropic<Lanes> kernel{lanes_of(lame.mu), lanes_of(record[k1]), lanes_of(record[k2]),
-                                              direction(record, fiber)};
+                                              direction(record, fiber, faults)};
+    faults.raise();
     const LawFacts facts{
         .name = record.tag(), .shear_modulus = lame.mu, .poisson_ratio = record[poisson], .isotropic = false};
     return std::make_shared<PotentialLaw<TransverselyIsotropic>>(
@@ -113,11 +118,14 @@ MaterialFactory holzapfel_gasser_ogden_material() {
   material.note(field_note);
   material.build([=](const Record& record) {
     const bool two = record.has(fiber2);
-    const Direction<Lanes> first = direction(record, fiber);
+    Faults faults(record);
+    const Direction<Lanes> first = direction(record, fiber, faults);
+    const Direction<Lanes> second = two ? direction(record, fiber2, faults) : first;
+    check_volume(record, keys, faults);
+    faults.raise();
     return make_isochoric(record, keys,
                           HolzapfelGasserOgden<Lanes>{lanes_of(record[mu]), lanes_of(record[k1]), lanes_of(record[k2]),
-                                                      lanes_of(record[kappa]), lanes_of(two ? 1 : 0), first,
-                                                      two ? direction(record, fiber2) : first},
+                                                      lanes_of(record[kappa]), lanes_of(two ? 1 : 0), first, second},
                           record[mu], false);
   });
   return material;
@@ -142,8 +150,12 @@ MaterialFactory guccione_material() {
       "same whichever way the sheets lie. A sheet that is given is checked not to lie along the fibres.");
   material.note(field_note);
   material.build([=](const Record& record) {
-    const Direction<Lanes> along = direction(record, fiber);
-    if (record.has(sheet)) check_across(record, along, direction(record, sheet));
+    Faults faults(record);
+    const Direction<Lanes> along = direction(record, fiber, faults);
+    const Direction<Lanes> across = record.has(sheet) ? direction(record, sheet, faults) : along;
+    if (record.has(sheet) && faults.none()) check_across(record, along, across, faults);
+    check_volume(record, keys, faults);
+    faults.raise();
     const Guccione<Lanes> kernel{lanes_of(record[C]), lanes_of(record[bf]), lanes_of(record[bt]), lanes_of(record[bfs]),
                                  along};
     return make_isochoric(record, keys, kernel, record[C] * record[bt] / 2, false);

@@ -37,18 +37,22 @@ Volumetric<Lanes> make_volumetric(const std::string& name, double bulk_modulus) 
   return {VolumeMeasure::logarithm, lanes_of(bulk_modulus)};
 }
 
-VolumeChoice volume_choice(const Record& record, const VolumeKeys& keys, double shear_modulus) {
+void check_volume(const Record& record, const VolumeKeys& keys, Faults& faults) {
   const bool incompressible = record[keys.incompressible], given = record.has(keys.bulk_modulus);
   if (incompressible && given)
-    throw Error(fmt::format("{}: incompressible = \"true\" leaves no room for bulkModulus. Leave one of them out",
-                            record.tag()),
-                record.where);
-  if (incompressible)
+    faults.add(fmt::format("{}: incompressible = \"true\" leaves no room for bulkModulus. Leave one of them out",
+                           record.tag()));
+  if (!incompressible && !given)
+    faults.add(
+        fmt::format("{} needs bulkModulus, or incompressible = \"true\" with formulation = \"mixed\"", record.tag()));
+}
+
+VolumeChoice volume_choice(const Record& record, const VolumeKeys& keys, double shear_modulus) {
+  Faults faults(record);
+  check_volume(record, keys, faults);
+  faults.raise();
+  if (record[keys.incompressible])
     return {.energy = make_volumetric(record[keys.volumetric], 0), .poisson_ratio = 0.5, .incompressible = true};
-  if (!given)
-    throw Error(
-        fmt::format("{} needs bulkModulus, or incompressible = \"true\" with formulation = \"mixed\"", record.tag()),
-        record.where);
   const double bulk = record[keys.bulk_modulus];
   return {.energy = make_volumetric(record[keys.volumetric], bulk),
           .poisson_ratio = poisson_ratio_of(bulk, shear_modulus)};

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "msml/core/describe.hpp"
+#include "msml/core/faults.hpp"
 #include "solver/materials/potential_law.hpp"
 
 namespace msml::fe {
@@ -26,6 +26,9 @@ struct VolumeKeys {
   Key<bool> incompressible;
 };
 VolumeKeys describe_volume(Description& material);
+
+/// Adds a fault unless exactly one of bulkModulus and incompressible="true" is given.
+void check_volume(const Record& record, const VolumeKeys& keys, Faults& faults);
 
 /// The volumetric energy with that bulk modulus at rest (lnJ2: kappa/2 (ln J)^2; J1: kappa/2 (J - 1)^2; I3:
 /// kappa/8 (I3 - 1)^2).

@@ -41,18 +41,25 @@ Keys describe(Description& material) {
   return keys;
 }
 
+void check(const Record& record, const Keys& keys, Faults& faults) {
+  const bool incompressible = record[keys.incompressible];
+  const std::string& form = record[keys.form];
+  if (incompressible && record.has(keys.poisson))
+    faults.add(fmt::format("{}: incompressible = \"true\" leaves no room for poissonRatio. Leave one of them out",
+                           record.tag()));
+  if (!incompressible && !record.has(keys.poisson))
+    faults.add(
+        fmt::format("{} needs poissonRatio, or incompressible = \"true\" with formulation = \"mixed\"", record.tag()));
+  if (form != "isochoric" && record.is_given(keys.volumetric))
+    faults.add(
+        fmt::format("{}: volumetric = \"{}\" has no place in form = \"{}\", which has its own energy of volume "
+                    "changes. Leave it out, or take form = \"isochoric\"",
+                    record.tag(), record[keys.volumetric], form));
+}
+
 /// Lambda is 0 if incompressible.
 Lame constants(const Record& record, const Keys& keys) {
-  const bool incompressible = record[keys.incompressible];
-  if (incompressible && record.has(keys.poisson))
-    throw Error(fmt::format("{}: incompressible = \"true\" leaves no room for poissonRatio. Leave one of them out",
-                            record.tag()),
-                record.where);
-  if (!incompressible && !record.has(keys.poisson))
-    throw Error(
-        fmt::format("{} needs poissonRatio, or incompressible = \"true\" with formulation = \"mixed\"", record.tag()),
-        record.where);
-  if (incompressible) return {record[keys.young] / 3, 0};
+  if (record[keys.incompressible]) return {record[keys.young] / 3, 0};
   return lame_of(record[keys.young], record[keys.poisson]);
 }
 
@@ -74,11 +81,6 @@ std::shared_ptr<const Law> build(const Record& record, const Keys& keys) {
   const std::string& form = record[keys.form];
   LawFacts facts{.name = record.tag(), .shear_modulus = lame.mu, .incompressible = record[keys.incompressible]};
   facts.poisson_ratio = facts.incompressible ? 0.5 : record[keys.poisson];
-  if (form != "isochoric" && record.is_given(keys.volumetric))
-    throw Error(fmt::format("{}: volumetric = \"{}\" has no place in form = \"{}\", which has its own energy of volume "
-                            "changes. Leave it out, or take form = \"isochoric\"",
-                            record.tag(), record[keys.volumetric], form),
-                record.where);
   if (form == "isochoric") {
     const auto U = make_volumetric(record[keys.volumetric], lame.bulk());
     return make<IsochoricNeoHookean>(lame, U.measure, U.modulus[0], facts);
@@ -109,7 +111,13 @@ MaterialFactory neo_hookean_material() {
       "Hooke's law of E and nu.");
   const Keys keys = describe(material);
   const InversionKeys inversion = describe_inversion(material);
-  material.build([=](const Record& record) { return with_inversion(record, inversion, build(record, keys)); });
+  material.build([=](const Record& record) {
+    Faults faults(record);
+    check(record, keys, faults);
+    check_inversion(record, inversion, record[keys.incompressible], faults);
+    faults.raise();
+    return with_inversion(record, inversion, build(record, keys));
+  });
   return material;
 }
 

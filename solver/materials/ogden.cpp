@@ -75,16 +75,15 @@ class OgdenLaw final : public Law, public StretchLaw {
   LawFacts facts_;
 };
 
-void check_terms(const Record& record, const std::vector<double>& mu, const std::vector<double>& alpha) {
+void check_terms(const Record& record, const std::vector<double>& mu, const std::vector<double>& alpha,
+                 Faults& faults) {
   if (mu.empty() || mu.size() != alpha.size() || mu.size() > 10)
-    throw Error(fmt::format("{}: mu has {} numbers and alpha has {}; both take the same count, 1 to 10", record.tag(),
-                            mu.size(), alpha.size()),
-                record.where);
+    return faults.add(fmt::format("{}: mu has {} numbers and alpha has {}; both take the same count, 1 to 10",
+                                  record.tag(), mu.size(), alpha.size()));
   for (std::size_t p = 0; p < mu.size(); ++p)
     if (!(mu[p] * alpha[p] > 0))
-      throw Error(fmt::format("{}: mu = {:g} with alpha = {:g}: the product of each pair must be > 0", record.tag(),
-                              mu[p], alpha[p]),
-                  record.where);
+      faults.add(fmt::format("{}: mu = {:g} with alpha = {:g}: the product of each pair must be > 0", record.tag(),
+                             mu[p], alpha[p]));
 }
 
 }  // namespace
@@ -104,7 +103,11 @@ MaterialFactory ogden_material() {
   const VolumeKeys keys = describe_volume(material);
   const InversionKeys inversion = describe_inversion(material);
   material.build([=](const Record& record) {
-    check_terms(record, record[mu], record[alpha]);
+    Faults faults(record);
+    check_terms(record, record[mu], record[alpha], faults);
+    check_volume(record, keys, faults);
+    check_inversion(record, inversion, record[keys.incompressible], faults);
+    faults.raise();
     Ogden<Lanes> kernel;
     double shear = 0;
     for (std::size_t p = 0; p < record[mu].size(); ++p) {

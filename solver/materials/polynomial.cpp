@@ -18,9 +18,19 @@ constexpr const char* volume_note =
     "The first invariants are those of J^(-1/3) F, so that volume changes are left to the volumetric term. For small "
     "strain it is Hooke's law of kappa = bulkModulus and the mu named above.";
 
-[[noreturn]] void refuse_modulus(const Record& record, const std::string& formula, double mu) {
-  throw Error(fmt::format("{}: the shear modulus at rest, {} = {:g}, is not > 0", record.tag(), formula, mu),
-              record.where);
+/// The keys that these laws share.
+struct CommonKeys {
+  VolumeKeys volume;
+  InversionKeys inversion;
+};
+
+/// Raises these faults and those of the shear modulus at rest (named by a formula), the volume and the inversion.
+void check(const Record& record, const CommonKeys& keys, const std::string& formula, double mu, Faults faults) {
+  if (!(mu > 0))
+    faults.add(fmt::format("{}: the shear modulus at rest, {} = {:g}, is not > 0", record.tag(), formula, mu));
+  check_volume(record, keys.volume, faults);
+  check_inversion(record, keys.inversion, record[keys.volume.incompressible], faults);
+  faults.raise();
 }
 
 /// Powers are the same everywhere; only c_ij may be an expression.
@@ -32,18 +42,18 @@ std::string powers_are_numbers(const Value& value) {
   return {};
 }
 
-Polynomial<Lanes> polynomial_of(const Record& record, const std::vector<double>& terms) {
+Polynomial<Lanes> polynomial_of(const Record& record, const std::vector<double>& terms, Faults& faults) {
   Polynomial<Lanes> kernel;
   for (std::size_t k = 0; k + 2 < terms.size(); k += 3) {
     const double i = terms[k], j = terms[k + 1];
     const auto whole = [](double n) { return n >= 0 && n <= 10 && n == std::floor(n); };
     if (!whole(i) || !whole(j) || i + j == 0)
-      throw Error(
+      faults.add(
           fmt::format("{}: terms holds the powers {:g} {:g}; powers are whole numbers from 0 to 10, not both 0: "
                       "\"1 0 c10 0 1 c01 …\"",
-                      record.tag(), i, j),
-          record.where);
-    kernel.terms.push_back({static_cast<int>(i), static_cast<int>(j), lanes_of(terms[k + 2])});
+                      record.tag(), i, j));
+    else
+      kernel.terms.push_back({static_cast<int>(i), static_cast<int>(j), lanes_of(terms[k + 2])});
   }
   return kernel;
 }
@@ -61,7 +71,7 @@ MaterialFactory mooney_rivlin_material() {
   material.note(volume_note);
   material.build([=](const Record& record) {
     const double mu = 2 * (record[c1] + record[c2]);
-    if (!(mu > 0)) refuse_modulus(record, "2 (c1 + c2)", mu);
+    check(record, {keys, inversion}, "2 (c1 + c2)", mu, Faults(record));
     return with_inversion(
         record, inversion,
         make_isochoric(record, keys, MooneyRivlin<Lanes>{lanes_of(record[c1]), lanes_of(record[c2])}, mu));
@@ -83,9 +93,10 @@ MaterialFactory reduced_polynomial_material() {
   material.note(volume_note);
   material.build([=](const Record& record) {
     const std::vector<double>& list = record[c];
+    Faults faults(record);
     if (list.empty() || list.size() > 10)
-      throw Error(fmt::format("{}: c has {} numbers; it takes 1 to 10", record.tag(), list.size()), record.where);
-    if (!(list[0] > 0)) refuse_modulus(record, "2 c_1", 2 * list[0]);
+      faults.add(fmt::format("{}: c has {} numbers; it takes 1 to 10", record.tag(), list.size()));
+    check(record, {keys, inversion}, "2 c_1", list.empty() ? 1 : 2 * list[0], faults);
     ReducedPolynomial<Lanes> kernel;
     for (const double x : list) kernel.c.push_back(lanes_of(x));
     return with_inversion(record, inversion, make_isochoric(record, keys, kernel, 2 * list[0]));
@@ -106,11 +117,13 @@ MaterialFactory polynomial_material() {
   const InversionKeys inversion = describe_inversion(material);
   material.note(volume_note);
   material.build([=](const Record& record) {
-    const Polynomial<Lanes> kernel = polynomial_of(record, record[terms]);
+    Faults faults(record);
+    const Polynomial<Lanes> kernel = polynomial_of(record, record[terms], faults);
     double mu = 0;
     for (const auto& [i, j, c] : kernel.terms)
       if (i + j == 1) mu += 2 * c[0];
-    if (!(mu > 0)) refuse_modulus(record, "2 (c_10 + c_01)", mu);
+    const bool whole = 3 * kernel.terms.size() == record[terms].size();  // else it is not known what was meant
+    check(record, {keys, inversion}, "2 (c_10 + c_01)", whole ? mu : 1, faults);
     return with_inversion(record, inversion, make_isochoric(record, keys, kernel, mu));
   });
   return material;

@@ -202,9 +202,52 @@ std::vector<Case> cases_3() {
   };
 }
 
+/// Tags that have several faults each.
+std::vector<Case> cases_4() {
+  return {
+      {"two in a law and two in a condition",
+       {.mesh = R"(<linearLine mesh="${b}"/>)",
+        .region = R"(<mooneyRivlinMaterial c1="-1" incompressible="true" bulkModulus="9"/>)",
+        .constraint = R"(<surfaceTraction indices="${i}" traction="1 2 3"/>)"},
+       {R"(4: mooneyRivlinMaterial: incompressible = "true" leaves no room for bulkModulus)",
+        R"(4: mooneyRivlinMaterial: the shear modulus at rest, 2 (c1 + c2) = -2, is not > 0)",
+        R"(6: surfaceTraction: traction: entry 2 = 2 is along y)",
+        R"(6: surfaceTraction: traction: entry 3 = 3 is along z)"}},
+      {"three in a law and three in a condition",
+       {.mesh = R"(<linearTriangle mesh="${b}"/>)",
+        .region = R"(<neoHookeanMaterial youngModulus="1" poissonRatio="0.3" volumetric="J1" incompressible="true" )"
+                  R"(inversion="clamped"/>)",
+        .constraint = R"(<forceConstraint indices="0 1 1" force="1 0 3 2 0 0"/>)"},
+       {R"(4: neoHookeanMaterial: incompressible = "true" leaves no room for poissonRatio)",
+        R"(4: neoHookeanMaterial: inversion = "clamped" and incompressible = "true" exclude)",
+        R"(4: neoHookeanMaterial: volumetric = "J1" has no place in form = "log")",
+        R"(6: forceConstraint: force: entry 3 = 3 is along z)",
+        R"(6: forceConstraint: force has 6 numbers; allowed are 3, or 3 for each of the 3 nodes)",
+        R"(6: forceConstraint: indices lists node 1 twice)"}},
+      {"directions, volume, terms of relaxation and gravity along two axes",
+       {.mesh = R"(<linearLine mesh="${b}"/>)",
+        .region = R"(<holzapfelGasserOgdenMaterial mu="1" k1="1" k2="1" fiber="0 0 0" fiber2="0,0,0"/>)"
+                  R"(<prony g="0.6 0.6" tau="1"/>)",
+        .step = R"(<step gravity="0 1 2"/>)"},
+       {R"(4: holzapfelGasserOgdenMaterial needs bulkModulus)",
+        R"(4: holzapfelGasserOgdenMaterial: fiber = '0 0 0' has no direction)",
+        R"(4: holzapfelGasserOgdenMaterial: fiber2 = '0,0,0' has no direction)",
+        R"(4: prony: g has 2 numbers and tau 1)", R"(4: prony: the sum of g = 1.2 is not < 1)",
+        R"(12: step: gravity has a part along y)", R"(12: step: gravity has a part along z)"}},
+      {"fields, pairs of numbers and powers",
+       {.region = R"(<ogdenMaterial mu="1 1" alpha="-1 -2" fields="mu=a mu[1]=b alpha beta=c"/>)",
+        .constraint = R"(<springMeshToFixed stiffness="1" fixedPoints="0 0 0 1 1 1" movingPoints="0 0 0"/>)"
+                      R"(<polynomialMaterial/>)"},
+       {R"(4: ogdenMaterial needs bulkModulus)", R"(4: ogdenMaterial: mu = 1 with alpha = -1)",
+        R"(4: ogdenMaterial: mu = 1 with alpha = -2)", R"(4: ogdenMaterial: fields names mu[1] twice)",
+        R"(4: ogdenMaterial: fields: 'alpha' is no pair)", R"(4: ogdenMaterial: fields: 'beta' is no attribute)",
+        R"(6: springMeshToFixed: movingPoints has 1 point)", R"(6: polynomialMaterial may not stand inside)"}},
+  };
+}
+
 std::vector<Case> cases() {
   std::vector<Case> all = cases_1();
-  for (const auto& more : {cases_2(), cases_3()}) all.insert(all.end(), more.begin(), more.end());
+  for (const auto& more : {cases_2(), cases_3(), cases_4()}) all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 

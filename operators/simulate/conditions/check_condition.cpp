@@ -13,15 +13,18 @@ namespace {
 
 bool zero(const Formula& formula) { return formula.constant() && formula.number == 0; }
 
-void check_unknown(const Record& condition, bool scalar) {
+/// False where it is told.
+bool fits_unknown(const Record& condition, bool scalar, const fe::Tell& tell) {
   const std::string& tag = condition.tag();
   const bool of_scalar = tag == "fixedValue" || tag == "flux" || tag == "source";
   if (of_scalar && !scalar)
-    refuse(condition, "is for scalar problems, whose regions have diffusionMaterial; this body has displacements");
+    tell(fault_of(condition,
+                  "is for scalar problems, whose regions have diffusionMaterial; this body has displacements"));
   if (!of_scalar && scalar)
-    refuse(condition,
-           "is for displacements, but the regions have diffusionMaterial, whose unknown is a number; scalar problems "
-           "take fixedValue, flux and source");
+    tell(fault_of(condition,
+                  "is for displacements, but the regions have diffusionMaterial, whose unknown is a number; scalar "
+                  "problems take fixedValue, flux and source"));
+  return of_scalar == scalar;
 }
 
 const Value* value_of(const Record& record, const std::string& attribute) {
@@ -37,106 +40,116 @@ bool leaves_out(const Record& record, int axis) {
 }
 
 /// What an axis across a body of lines or triangles is told.
-[[noreturn]] void refuse_across(const Record& record, CellKind kind, const std::string& attribute, std::size_t i,
-                                const std::string& value) {
-  refuse(record, fmt::format("{}: entry {} = {} is along {}, but {} moves along {} alone; write 0 there", attribute,
-                             i + 1, value, "xyz"[i % 3], dimension(kind) == 1 ? "a body of lines" : "a plane body",
-                             dimension(kind) == 1 ? "x" : "x and y"));
+Error across(const Record& record, CellKind kind, const std::string& attribute, std::size_t i,
+             const std::string& value) {
+  return fault_of(
+      record, fmt::format("{}: entry {} = {} is along {}, but {} moves along {} alone; write 0 there", attribute, i + 1,
+                          value, "xyz"[i % 3], dimension(kind) == 1 ? "a body of lines" : "a plane body",
+                          dimension(kind) == 1 ? "x" : "x and y"));
 }
 
-void check_normal(const Record& record, CellKind kind) {
+void check_normal(const Record& record, CellKind kind, const fe::Tell& tell) {
   const Value* value = value_of(record, "normal");
   const auto* normal = value == nullptr ? nullptr : std::get_if<std::vector<double>>(value);
   for (std::size_t i = static_cast<std::size_t>(dimension(kind)); normal != nullptr && i < normal->size(); ++i)
-    if ((*normal)[i] != 0) refuse_across(record, kind, "normal", i, fmt::format("{:g}", (*normal)[i]));
+    if ((*normal)[i] != 0) tell(across(record, kind, "normal", i, fmt::format("{:g}", (*normal)[i])));
 }
 
 /// Some of the named axes must be ones that the body moves along.
-void check_components(const Record& record, CellKind kind) {
+void check_components(const Record& record, CellKind kind, const fe::Tell& tell) {
   const Value* value = value_of(record, "components");
   const auto* words = value == nullptr ? nullptr : std::get_if<Words>(value);
   if (words == nullptr || words->empty()) return;
   for (int axis = 0; axis < dimension(kind); ++axis)
     if (!leaves_out(record, axis)) return;
-  refuse(record, fmt::format("components = {} holds nothing: {} moves along {} alone", fmt::join(*words, " "),
-                             dimension(kind) == 1 ? "a body of lines" : "a plane body",
-                             dimension(kind) == 1 ? "x" : "x and y"));
+  tell(fault_of(record, fmt::format("components = {} holds nothing: {} moves along {} alone", fmt::join(*words, " "),
+                                    dimension(kind) == 1 ? "a body of lines" : "a plane body",
+                                    dimension(kind) == 1 ? "x" : "x and y")));
 }
 
-void check_vectors(const Record& record, CellKind kind, const std::string& attribute, const Formulas& list) {
+/// The first entry along each axis that it does not move along.
+void check_vectors(const Record& record, CellKind kind, const std::string& attribute, const Formulas& list,
+                   const fe::Tell& tell) {
   if (list.size() % 3 != 0 || (attribute == "pressure" && list.size() != 3)) return;
+  bool told[3] = {};
   for (std::size_t i = 0; i < list.size(); ++i) {
     const int axis = static_cast<int>(i % 3);
-    if (axis < dimension(kind) || zero(list[i]) || leaves_out(record, axis)) continue;
-    refuse_across(record, kind, attribute, i, list[i].constant() ? fmt::format("{:g}", list[i].number) : list[i].text);
+    if (told[axis] || axis < dimension(kind) || zero(list[i]) || leaves_out(record, axis)) continue;
+    tell(across(record, kind, attribute, i, list[i].constant() ? fmt::format("{:g}", list[i].number) : list[i].text));
+    told[axis] = true;
   }
 }
 
-void check_pressure(const Record& condition) {
+void check_pressure(const Record& condition, const fe::Tell& tell) {
   const Value* pressure = value_of(condition, "pressure");
   const Value* follower = value_of(condition, "follower");
   if (pressure == nullptr || follower == nullptr) return;
   const auto* numbers = std::get_if<Formulas>(pressure);
   const auto* wanted = std::get_if<bool>(follower);
   if (numbers != nullptr && numbers->size() == 3 && wanted != nullptr && *wanted)
-    refuse(condition,
-           "follower = true has no meaning for a traction vector (three numbers), which keeps its direction");
+    tell(fault_of(condition,
+                  "follower = true has no meaning for a traction vector (three numbers), which keeps its direction"));
 }
 
-void check_spring(const Record& condition) {
+void check_spring(const Record& condition, const fe::Tell& tell) {
   const Value *first = value_of(condition, "first"), *second = value_of(condition, "second");
   if (first == nullptr || second == nullptr) return;
   const auto *one = std::get_if<Integer>(first), *two = std::get_if<Integer>(second);
   if (one != nullptr && two != nullptr && *one == *two)
-    refuse(condition, fmt::format("first and second are the same node, {}", *one));
+    tell(fault_of(condition, fmt::format("first and second are the same node, {}", *one)));
 }
 
-void check_motion(const Record& condition, const fe::Settings& settings) {
+void check_motion(const Record& condition, const fe::Settings& settings, const fe::Tell& tell) {
   if (condition.tag() == "initialVelocity" && !fe::is_dynamic(settings.integrator))
-    refuse(condition,
-           fmt::format("has no meaning with timeIntegration=\"{}\", where nothing has inertia; leave it out, "
-                       "or choose a dynamic timeIntegration",
-                       fe::name(settings.integrator)));
+    tell(fault_of(condition,
+                  fmt::format("has no meaning with timeIntegration=\"{}\", where nothing has inertia; leave it out, "
+                              "or choose a dynamic timeIntegration",
+                              fe::name(settings.integrator))));
   if (!settings.arc_length.on) return;
   if (condition.tag() == "fixedValue")
     if (const auto* value = std::get_if<Formula>(value_of(condition, "value")); value != nullptr && !zero(*value))
-      refuse(condition,
-             "moves the unknown, but arcLength follows loads alone: take value=\"0\", or arcLength=\"false\"");
+      tell(fault_of(condition,
+                    "moves the unknown, but arcLength follows loads alone: take value=\"0\", or arcLength=\"false\""));
   if (condition.tag() != "displacementConstraint") return;
   const auto* moved = std::get_if<Formulas>(value_of(condition, "displacement"));
   for (std::size_t i = 0; moved != nullptr && i < moved->size(); ++i)
     if (!zero((*moved)[i]) && !leaves_out(condition, static_cast<int>(i % 3)))
-      refuse(condition,
-             "moves supports, but arcLength follows loads alone: let the supports stay, or take arcLength=\"false\"");
+      return tell(fault_of(
+          condition,
+          "moves supports, but arcLength follows loads alone: let the supports stay, or take arcLength=\"false\""));
 }
 
-void check_of_particles(const Record& condition) {
+/// False where it is told.
+bool fits_particles(const Record& condition, const fe::Tell& tell) {
   const std::string& tag = condition.tag();
-  if (tag == "bodyForce" || tag == "surfaceTraction" || tag.starts_with("surfacePressure"))
-    refuse(condition, "acts on elements, which particles do not have; take forceConstraint, or the gravity of a step");
+  if (tag != "bodyForce" && tag != "surfaceTraction" && !tag.starts_with("surfacePressure")) return true;
+  tell(fault_of(condition,
+                "acts on elements, which particles do not have; take forceConstraint, or the gravity of a step"));
+  return false;
 }
 
-void check_across(const Record& condition, CellKind kind) {
+void check_across(const Record& condition, CellKind kind, const fe::Tell& tell) {
   const auto& slots = condition.description->slots();
   for (std::size_t s = 0; s < slots.size(); ++s)
     if (const auto* list = std::get_if<Formulas>(&condition.values[s]))
-      check_vectors(condition, kind, slots[s].name, *list);
-  check_normal(condition, kind);
-  check_components(condition, kind);
+      check_vectors(condition, kind, slots[s].name, *list, tell);
+  check_normal(condition, kind, tell);
+  check_components(condition, kind, tell);
 }
 
 }  // namespace
 
-void check_condition(const Record& condition, const Surroundings& around) {
-  if (around.kind == CellKind::vertex) check_of_particles(condition);
-  if (around.scalar) check_unknown(condition, *around.scalar);
+void check_condition(const Record& condition, const Surroundings& around, const fe::Tell& tell) {
+  // What is meant for another problem has one fault; the others would only follow from it.
+  if (around.kind == CellKind::vertex && !fits_particles(condition, tell)) return;
+  if (around.scalar && !fits_unknown(condition, *around.scalar, tell)) return;
   if (around.kind && condition.tag() == "supportingMesh" && dimension(*around.kind) != 3)
-    refuse(condition, "needs a main mesh of tetrahedra");
+    tell(fault_of(condition, "needs a main mesh of tetrahedra"));
   if (around.kind && *around.kind != CellKind::vertex && dimension(*around.kind) < 3)
-    check_across(condition, *around.kind);
-  check_pressure(condition);
-  check_spring(condition);
-  if (around.settings != nullptr) check_motion(condition, *around.settings);
+    check_across(condition, *around.kind, tell);
+  check_pressure(condition, tell);
+  check_spring(condition, tell);
+  if (around.settings != nullptr) check_motion(condition, *around.settings, tell);
 }
 
 }  // namespace msml::simulation

@@ -32,18 +32,29 @@ bool selects_nodes(const std::string& tag) {
   return !of_nodes(tag).empty() || std::ranges::find(tags, tag) != std::end(tags);
 }
 
-void check_once(const Record& record, const IndexSet& set) {
-  std::set<int> seen;
+void check_once(const Record& record, const IndexSet& set, const fe::Tell& tell) {
+  std::set<int> seen, twice;
   for (const int id : set.ids)
-    if (!seen.insert(id).second) refuse(record, fmt::format("indices lists node {} twice", id));
+    if (!seen.insert(id).second && twice.insert(id).second)
+      tell(fault_of(record, fmt::format("indices lists node {} twice", id)));
 }
 
-void check_points(const Record& record) {
+void check_points(const Record& record, const fe::Tell& tell) {
   const auto* from = value_of<std::vector<double>>(record, "movingPoints");
   const auto* to = value_of<std::vector<double>>(record, "fixedPoints");
   if (from != nullptr && to != nullptr && from->size() != to->size())
-    refuse(record, fmt::format("movingPoints has {}, but fixedPoints {}; each spring needs one of both",
-                               counted(static_cast<long long>(from->size() / 3), "point"), to->size() / 3));
+    tell(fault_of(record, fmt::format("movingPoints has {}, but fixedPoints {}; each spring needs one of both",
+                                      counted(static_cast<long long>(from->size() / 3), "point"), to->size() / 3)));
+}
+
+/// Hands what `check` throws to `tell`.
+template <class Check>
+void attempt(const fe::Tell& tell, const Check& check) {
+  try {
+    check();
+  } catch (const Error& error) {
+    tell(error);
+  }
 }
 
 }  // namespace
@@ -78,8 +89,8 @@ void check_per_face(const Record& record, const std::string& attribute, const Fo
                                attribute));
 }
 
-void check_counts(const Record& condition) {
-  check_points(condition);
+void check_counts(const Record& condition, const fe::Tell& tell) {
+  check_points(condition, tell);
   const int slot = condition.description->find("indices");
   if (slot < 0) return;
   const auto s = static_cast<std::size_t>(slot);
@@ -89,10 +100,10 @@ void check_counts(const Record& condition) {
   const bool nodes = set == nullptr ? condition.given[s] : set->kind == Indexed::nodes;
   const std::string attribute = of_nodes(condition.tag());
   if (const auto* numbers = value_of<Formulas>(condition, attribute); numbers != nullptr)
-    check_per_node(condition, attribute, *numbers, nodes, listed);
+    attempt(tell, [&] { check_per_node(condition, attribute, *numbers, nodes, listed); });
   if (const auto* numbers = value_of<Formulas>(condition, "pressure"); numbers != nullptr)
-    check_per_face(condition, "pressure", *numbers, set == nullptr || !nodes, listed);
-  if (set != nullptr && nodes && selects_nodes(condition.tag())) check_once(condition, *set);
+    attempt(tell, [&] { check_per_face(condition, "pressure", *numbers, set == nullptr || !nodes, listed); });
+  if (set != nullptr && nodes && selects_nodes(condition.tag())) check_once(condition, *set, tell);
 }
 
 }  // namespace msml::simulation

@@ -55,15 +55,14 @@ ConditionFactory supporting_mesh();
 /// All of the above.
 std::vector<ConditionFactory> conditions();
 
-/// Throws Error at the condition's place where it has no meaning there: it is of displacements, but the unknown is
+/// Tells, at the condition's place, each reason why it has no meaning there: it is of displacements, but the unknown is
 /// scalar, or the other way round; it acts on elements, but there are particles; it points out of the plane or the line
-/// of the body; it ties a node to itself; it gives a
-/// velocity to what has no inertia.
-void check_condition(const Record& condition, const Surroundings& around);
+/// of the body; it ties a node to itself; it gives a velocity to what has no inertia.
+void check_condition(const Record& condition, const Surroundings& around, const fe::Tell& tell = fe::raise);
 
-/// Throws Error at the condition's place where its numbers do not fit each other or the indices that the scene lists in
+/// Tells, at the condition's place, where its numbers do not fit each other or the indices that the scene lists in
 /// place; what other tasks give is not looked at.
-void check_counts(const Record& condition);
+void check_counts(const Record& condition, const fe::Tell& tell);
 
 /// Throws Error where an initial velocity of the whole body, linear in X, Y and Z, changes volumes that a law keeps.
 /// `alone`: no other initial velocity overwrites it somewhere.
