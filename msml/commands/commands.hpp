@@ -24,7 +24,7 @@ struct SceneArguments {
 
 /// Runs a scene. 0 done, 2 bad input, 3 not converged, 4 internal.
 int exec_command(const Registry& registry, const SceneArguments& arguments);
-/// Compiles a scene and says what it found. 0 or 2.
+/// Compiles a scene, and each setting of its studies, and says what it found. 0 or 2.
 int check_command(const Registry& registry, const SceneArguments& arguments);
 /// Prints the graph as DOT, or writes it as FILE.dot or FILE.svg.
 int show_command(const Registry& registry, const SceneArguments& arguments, const std::string& file);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "msml/commands/commands.hpp"
+#include "msml/commands/study.hpp"
 #include "msml/core/atomic_file.hpp"
 #include "msml/plan/plan.hpp"
 #include "msml/run/interrupt.hpp"
@@ -29,6 +30,18 @@ Compilation compile_scene(const Registry& registry, const SceneArguments& argume
 
 int processors(int wanted) {
   return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+/// Tells of the settings of each study that are refused; false where a study has no others.
+bool check_studies(const Registry& registry, const SceneArguments& arguments, const Compilation& compilation) {
+  if (compilation.studies.empty()) return true;
+  std::vector<Fault> told;
+  const Document document = read_document(arguments.scene, told);
+  const CompileOptions options{settings(arguments.set), arguments.output_folder, arguments.strict};
+  bool good = true;
+  for (const Study& study : compilation.studies)
+    good = print_refusals(study, prepare_runs(document, registry, options, study)) && good;
+  return good;
 }
 
 void write_log(const SceneArguments& arguments, const std::string& json) {
@@ -101,6 +114,7 @@ int exec_command(const Registry& registry, const SceneArguments& arguments) {
 int check_command(const Registry& registry, const SceneArguments& arguments) {
   const Compilation compilation = compile_scene(registry, arguments);
   if (!print_messages(compilation, verbosity(arguments))) return bad_input;
+  if (!check_studies(registry, arguments, compilation)) return bad_input;
   const Plan plan = make_plan(compilation.graph, arguments.requested);
   if (!arguments.quiet)
     std::printf("%s: no faults; %zu nodes, %zu run\n", arguments.scene.c_str(), compilation.graph.nodes.size(),

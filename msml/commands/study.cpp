@@ -17,6 +17,7 @@
 #include "msml/study/columns.hpp"
 #include "msml/study/extrapolate.hpp"
 #include "msml/study/page.hpp"
+#include "msml/study/refusals.hpp"
 #include "msml/study/report.hpp"
 #include "msml/study/runner.hpp"
 
@@ -90,10 +91,15 @@ class StudyRunner {
     if (!print_messages(compilation_, verbosity)) return static_cast<int>(Failure::input);
     if (compilation_.studies.empty()) throw Error("the scene has no <studies>", {arguments_.scene.scene, 0});
     if (!arguments_.name.empty()) find_study(compilation_.studies, arguments_.name, arguments_.scene.scene);
-    watch_for_interrupts();
+    std::vector<Chosen> chosen;
     for (const Study& study : compilation_.studies)
-      if (arguments_.name.empty() || study.id == arguments_.name) run_one(study);
-    return 0;
+      if (arguments_.name.empty() || study.id == arguments_.name)
+        chosen.push_back({study, prepare_runs(document_, registry_, compile_options_, study)});
+    const int code = all_can_run(chosen) ? 0 : static_cast<int>(Failure::input);
+    if (code != 0 && !arguments_.scene.dry_run) return code;
+    watch_for_interrupts();
+    for (const Chosen& each : chosen) run_one(each.study, each.runs);
+    return code;
   }
 
  private:
@@ -101,7 +107,20 @@ class StudyRunner {
     return wanted > 0 ? wanted : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   }
 
-  void run_one(const Study& study) {
+  /// A study and its runs, prepared before any of them starts.
+  struct Chosen {
+    const Study& study;
+    std::vector<StudyRun> runs;
+  };
+
+  /// Tells of the settings that are refused; false if a study has no others.
+  static bool all_can_run(const std::vector<Chosen>& chosen) {
+    bool good = true;
+    for (const Chosen& each : chosen) good = print_refusals(each.study, each.runs) && good;
+    return good;
+  }
+
+  void run_one(const Study& study, const std::vector<StudyRun>& runs) {
     const Clock::time_point start = Clock::now();
     StudyOptions options{.folder = fs::path(arguments_.scene.output_folder) / study.id,
                          .jobs = processors(arguments_.scene.jobs),
@@ -109,7 +128,6 @@ class StudyRunner {
                          .keep = arguments_.keep,
                          .share = !arguments_.no_sharing};
     if (!study.timed() && arguments_.scene.threads == 0) options.threads = 1;  // several runs share the processors
-    const auto runs = prepare_runs(document_, registry_, compile_options_, study);
     if (!arguments_.scene.quiet) std::fprintf(stderr, "study %s: %zu runs\n", study.id.c_str(), runs.size());
     if (arguments_.scene.dry_run) return print_plan(runs);
     Sharing sharing;
@@ -190,6 +208,14 @@ class StudyRunner {
 };
 
 }  // namespace
+
+bool print_refusals(const Study& study, const std::vector<StudyRun>& runs) {
+  const Refusals found = find_refusals(study, runs);
+  if (found.told.message.empty()) return true;
+  std::fprintf(stderr, "%s: %s%s\n", found.told.where.str().c_str(),
+               found.hopeless() ? "" : "warning: ", found.told.message.c_str());
+  return !found.hopeless();
+}
 
 int study_command(const Registry& registry, const StudyArguments& arguments) {
   return StudyRunner(registry, arguments).run();

@@ -2,6 +2,7 @@
 // study and chart.
 #pragma once
 #include "msml/commands/commands.hpp"
+#include "msml/study/prepare.hpp"
 
 namespace msml {
 
@@ -13,9 +14,13 @@ struct StudyArguments {
   std::map<std::string, std::string> versions;  ///< of the libraries, for the record
 };
 
-/// Runs the studies of a scene and writes their tables, charts and pages. 0, or 2 for a scene with faults. A run
-/// without a result does not make the command fail: it is a row of the table.
+/// Runs the studies of a scene and writes their tables, charts and pages. 0, or 2 for a scene with faults or a study
+/// none of whose settings the scene takes, before anything runs. A run without a result does not make the command fail:
+/// it is a row of the table.
 int study_command(const Registry& registry, const StudyArguments& arguments);
+
+/// Prints to stderr which settings of a study its scene refuses; false if it refuses all of them.
+bool print_refusals(const Study& study, const std::vector<StudyRun>& runs);
 
 /// What stands on the command line of chart: what is not given is as the saved chart has it.
 struct ChartArguments {

@@ -21,7 +21,8 @@ void sort_by_place(std::vector<Fault>& faults) {
 
 void keep_variables(Work& work) {
   for (const auto& [name, named] : work.scope)
-    if (named.kind == Named::Kind::variable) work.out.variables[name] = {named.variable.value, named.variable.unit};
+    if (named.kind == Named::Kind::variable)
+      work.out.variables[name] = {named.variable.value, named.variable.ambiguous ? "" : named.variable.unit};
 }
 
 void note_unused(Work& work) {

@@ -155,8 +155,10 @@ bool has_file(const Node& node, int slot) {
 
 /// A number without a unit is counted in "1" until the variable fills an attribute that has one.
 void note_unit(Variable& variable, const Slot& slot) {
-  if (!variable.unit.empty() && variable.unit != "1") return;
   const bool number = slot.type == Type::number || slot.type == Type::integer;
+  const bool known = !variable.unit.empty() && variable.unit != "1";
+  if (known && !slot.unit.empty() && slot.unit != variable.unit) variable.ambiguous = true;
+  if (known) return;
   if (!slot.unit.empty())
     variable.unit = slot.unit;
   else if (number)

@@ -14,7 +14,8 @@ struct Variable {
   std::string value, logical;
   Location where;
   bool used = false;
-  std::string unit;  ///< of the attribute that it alone fills, the first with a unit; "1" for a plain number
+  std::string unit;        ///< of the attributes that it alone fills; "1" for a plain number, "" where they differ
+  bool ambiguous = false;  ///< it fills attributes of several units
 };
 
 /// What a name stands for. Variables, tasks and scene outputs share one scope.

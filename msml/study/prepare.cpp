@@ -96,7 +96,9 @@ class Preparation {
   }
 
   static std::string first_fault(const Compilation& compilation) {
-    return compilation.faults.empty() ? "" : compilation.faults.front().str();
+    const std::size_t count = compilation.faults.size();
+    return count == 0 ? ""
+                      : compilation.faults.front().str() + (count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
   }
 
   /// References of several runs are often the same: each is compiled once.
@@ -194,10 +196,6 @@ std::vector<StudyRun> prepare_runs(const Document& document, const Registry& reg
   for (const Settings& settings :
        expand(study, [](const Location&where, const std::string&what) { throw Error(what, where); }))
     runs.push_back(preparation.run(settings));
-  if (std::all_of(runs.begin(), runs.end(), [](const StudyRun& run) { return !run.scene; }))
-    throw Error(fmt::format("no run of study '{}' can be carried out; the first: {}", study.id,
-                            runs.empty() ? "there is none" : runs.front().reason),
-                study.where);
   return runs;
 }
 

@@ -31,7 +31,7 @@ struct StudyRun {
 /// empty name: the first series of states, else the first output of a simulation.
 std::optional<Edge> find_output(const Graph& graph, const std::string& name);
 
-/// All runs of the study. `options` holds what was set on the command line. Throws Error if no run can be compiled.
+/// All runs of the study, those that are refused among them. `options` holds what was set on the command line.
 std::vector<StudyRun> prepare_runs(const Document& document, const Registry& registry, const CompileOptions& options,
                                    const Study& study);
 

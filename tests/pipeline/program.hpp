@@ -7,8 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
+
+#include "tests/content.hpp"
 
 namespace msml::testing {
 
@@ -40,12 +41,6 @@ class Folder {
  private:
   fs::path path_;
 };
-
-inline std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 /// `msml ARGUMENTS` with a time limit of `seconds`; a program that hangs ends with code 124.
 inline Finished run_msml(const std::string& arguments, int seconds = 240) {

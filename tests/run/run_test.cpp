@@ -14,10 +14,12 @@
 
 #include "msml/run/report.hpp"
 #include "tests/compile/objects.hpp"
+#include "tests/content.hpp"
 
 namespace msml {
 namespace {
 
+using testing::content;
 using tiny::Folder;
 using tiny::object;
 using tiny::workflow;
@@ -71,11 +73,6 @@ Registry with_act(std::function<void(Context&, Key<Mesh>, Key<double>)> act) {
   op.run([=](Context& c) { act(c, mesh, number); });
   registry.add(std::move(op));
   return registry;
-}
-
-std::string content(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 TEST(Run, WritesTargetsAndReportsEachNode) {

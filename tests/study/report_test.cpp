@@ -4,12 +4,12 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "msml/commands/study.hpp"
 #include "msml/study/table.hpp"
 #include "msml/study/units.hpp"
 #include "tests/commands/real_language.hpp"
+#include "tests/content.hpp"
 #include "tests/study/bar.hpp"
 
 namespace msml {
@@ -17,12 +17,7 @@ namespace {
 
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
+using testing::content;
 
 void write(const fs::path& file, const std::string& text) { std::ofstream(file) << text; }
 
@@ -154,6 +149,25 @@ TEST(Units, EveryFieldOfResultsHasOne) {
   ASSERT_NE(result, nullptr);
   for (const std::string& field : result->slots()[static_cast<std::size_t>(result->find("fields"))].choices)
     EXPECT_NE(field_unit(field), "") << field;
+}
+
+TEST(Units, OfAVariableAreThoseOfTheAttributesThatItFillsAlone) {
+  const auto unit = [](const std::string& young, const std::string& density) {
+    std::string text = studies::bar("");
+    const auto put = [&](const std::string& old, const std::string& now) {
+      text.replace(text.find(old), old.size(), now);
+    };
+    put("youngModulus=\"${E}\"", "youngModulus=\"" + young + "\"");
+    put("massDensity=\"1\"", "massDensity=\"" + density + "\"");
+    const Compilation scene = compile_text(text, "s.xml", real_language());
+    EXPECT_EQ(tiny::lines(scene.faults), "");
+    return scene.variables.at("E").unit;
+  };
+  EXPECT_EQ(unit("${E}", "1"), "stress");
+  EXPECT_EQ(unit("1", "${E}"), "mass/volume");
+  EXPECT_EQ(unit("2*${E}", "1"), "") << "a factor may have any unit";
+  EXPECT_EQ(unit("${E}", "2*${E}"), "stress");
+  EXPECT_EQ(unit("${E}", "${E}"), "") << "of two units neither is its own";
 }
 
 TEST(Units, LabelsTakeThePlaceOfWords) {

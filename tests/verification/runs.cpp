@@ -10,19 +10,15 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/content.hpp"
 #include "tests/verification/measures.hpp"
 
 namespace msml::verification {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::content;
 using Json = nlohmann::json;
-
-std::string content(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
 
 std::string file_name(std::string text) {
   for (char& c : text)
