@@ -12,7 +12,7 @@ namespace {
 constexpr int most_colours = 64;
 
 /// Small meshes come in small chunks, so that every colour has several for each thread.
-int batches_per_chunk(int batches) { return std::clamp(batches / 256, 1, 8); }
+int batches_per_chunk(int batches) { return std::clamp(batches / 128, 1, 32); }
 
 /// Chunks, the colour of each (most_colours: alone), and the colours seen at each node.
 class Colouring {

@@ -76,6 +76,17 @@ void add_blocks(const Lanes* block, int count, const Position& position, BlockMa
   }
 }
 
+/// Asks for the blocks that a batch will add to, so that they come while its elements are computed.
+template <class Batch>
+void fetch_blocks(const Batch& batch, const BlockMatrix& matrix) {
+  for (int lane = 0; lane < batch.count; ++lane)
+    for (const int position : batch.position[lane]) {
+      const double* block = matrix.values.data() + 9 * static_cast<std::size_t>(position);
+      __builtin_prefetch(block, 1, 2);
+      __builtin_prefetch(block + 8, 1, 2);
+    }
+}
+
 /// det F of F = I + H.
 inline Lanes volume_ratio(const Gradients& H) {
   Tensor<Lanes> F = H;

@@ -224,7 +224,10 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
 }
 
 Assembled MixedElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
-  return add_by_colour(colours_, [&](std::size_t b) { return add_batch(batches_[b], u, want, force, matrix); });
+  return add_by_colour(colours_, [&](std::size_t b) {
+    if (matrix) fetch_blocks(batches_[b], *matrix);
+    return add_batch(batches_[b], u, want, force, matrix);
+  });
 }
 
 void MixedElements::begin_step(double dt) {

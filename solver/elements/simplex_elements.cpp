@@ -153,14 +153,15 @@ Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch
   return found;
 }
 
-/// Asks for what add_batch reads of a batch without a matrix: the processor does not guess the gaps between batches.
+/// Asks for what add_batch reads of a batch: the processor does not guess the gaps between batches.
 template <class Batch>
-void fetch(const Batch& batch) {
+void fetch(const Batch& batch, bool positions) {
   const auto lines = [](const void* from, std::size_t bytes) {
     for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(from) + k);
   };
   lines(&batch.region, 64);
   lines(batch.node, sizeof batch.node);
+  if (positions) lines(batch.position, sizeof batch.position);
   lines(batch.points, batch.straight ? sizeof batch.points[0] : sizeof batch.points);
   lines(&batch.laws, sizeof batch.laws + sizeof batch.history);
 }
@@ -169,7 +170,8 @@ template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
   return add_by_colour(colours_, [&](std::size_t b) {
-    if (b + 1 < batches_.size()) fetch(batches_[b + 1]);
+    if (matrix) fetch_blocks(batches_[b], *matrix);
+    if (b + 1 < batches_.size()) fetch(batches_[b + 1], matrix != nullptr);
     return add_batch(batches_[b], u, want, force, matrix);
   });
 }

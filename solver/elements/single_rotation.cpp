@@ -102,6 +102,7 @@ class SingleRotationElements final : public Elements {
   Assembled add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
     const auto& batch = standard_.batches()[b];
     const RotationBatch& own = batches_[b];
+    if (matrix) fetch_blocks(batch, *matrix);
     Lanes moved[10][3];
     gather_all(batch, u, moved);
     SimplexResult<3, 10> result;
