@@ -275,24 +275,4 @@ IncrementResult Newton::run(const Increment& increment) {
   return result;
 }
 
-Vector Newton::initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads,
-                                    const Supports& supports) {
-  factor_known_ = false;
-  prepare(u, loads);
-  BlockMatrix C(tangent_.pattern, 0), &mass = effective_;  // which no increment uses yet
-  equations_.evaluate_motion(v, Vector::Zero(u.size()), damping(u, loads, C) ? &C : nullptr, forces_);
-  mass.set_zero();
-  add(mass, 1, equations_.mass());
-  const auto solver = make_conjugate_gradient(Preconditioner::jacobi);
-  Vector a = Vector::Zero(u.size()), force = forces_.residual();
-  supports.slides.project(mass);
-  supports.slides.project(force);
-  Mask still = pressure_mask(equations_.numbering(), true);
-  for (std::size_t k = 0; k < still.size(); ++k) still[k] = still[k] || supports.fixed[k];
-  if (solver->factor(mass, still) == LinearStatus::done) solver->solve(force, 1e-13, a);
-  forces_.inertia.setZero();
-  multiply(equations_.mass(), a, forces_.inertia);
-  return a;
-}
-
 }  // namespace msml::fe

@@ -93,8 +93,19 @@ class Newton {
   /// converged, or what is wrong with the state evaluated last: not finite, an element inverted whose law does not
   /// survive that, or in statics a collapsed one.
   Stop state_verdict() const;
-  /// M a = external - internal - damping at free unknowns, a = 0 at fixed ones.
-  Vector initial_acceleration(const Vector& u, const Vector& v, const ScaledLoads& loads, const Supports& supports);
+  /// M a = external - internal - damping at free unknowns, a = `given` at fixed ones. Where moduli are infinite, u gets
+  /// the pressures that go with it, B p beside the internal forces: those with which c keeps its rate, B^T a +
+  /// c''(u)[v, v] = 0 (see kept_volume.hpp). `balanced` is false where these equations are singular; u keeps its
+  /// pressures then.
+  Vector initial_acceleration(Vector& u, const Vector& v, const ScaledLoads& loads, const Supports& supports,
+                              const Vector& given, bool& balanced);
+  /// How far the start of a run was from keeping the volumes that infinite moduli keep.
+  struct Kept {
+    bool done = true;                       ///< false: the equations are singular, or lead nowhere; nothing changed
+    double displacement = 0, velocity = 0;  ///< largest change beside the largest value; 0: all were kept already
+  };
+  /// Changes u and v as little as may be, in the norm of the mass, so that c(u) = 0 and B^T v = 0.
+  Kept keep_volumes(Vector& u, Vector& v, const Supports& supports);
   /// Mixed elements: gives u the pressures that belong to its displacements, int N_c (g(F) - p / k) = 0 for each corner
   /// (see MixedElements). Returns how many are not determined so, as k is infinite: these keep their values. Nothing
   /// changes where the forces at u are not finite.

@@ -151,30 +151,4 @@ bool Newton::correction(const Increment& increment, const Vector& residual, Vect
   return status == LinearStatus::done && step.allFinite();
 }
 
-int Newton::settle_pressures(Vector& u) {
-  const Numbering& numbering = equations_.numbering();
-  if (!numbering.mixed()) return 0;
-  factor_known_ = false;
-  prepare(u, {});
-  if (!forces_.internal.allFinite()) return 0;
-  BlockMatrix& compliance = effective_;  // which no increment uses yet
-  compliance.values = tangent_.values;
-  for (double& value : compliance.values) value = -value;
-  Mask still = pressure_mask(numbering, false);
-  std::fill_n(still.begin(), 3 * numbering.body_nodes(), 1);
-  int undetermined = 0;
-  for (int node = numbering.body_nodes(); node < numbering.nodes(); ++node) {
-    const auto diagonal = static_cast<std::size_t>(compliance.pattern->diagonal[static_cast<std::size_t>(node)]);
-    if (compliance.values[9 * diagonal] > 0) continue;
-    still[3 * static_cast<std::size_t>(node)] = 1;
-    ++undetermined;
-  }
-  // As well conditioned as a mass matrix.
-  const auto solver = make_conjugate_gradient(Preconditioner::jacobi);
-  Vector change = Vector::Zero(u.size());
-  if (solver->factor(compliance, still) == LinearStatus::done) solver->solve(forces_.internal, 1e-13, change);
-  u += change;
-  return undetermined;
-}
-
 }  // namespace msml::fe

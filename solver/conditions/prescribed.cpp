@@ -24,15 +24,36 @@ Vector Supports::at(double share, double time) const {
   return value;
 }
 
-void Supports::set_off(double time, double dt, Vector& velocity) const {
-  const double h = 0.1 * dt;
-  for (std::size_t m = 0; m < moved.size(); ++m) {
-    const Vec3 rate = (4 * moved[m].at(time + h) - 3 * moved[m].at(time) - moved[m].at(time + 2 * h)) / (2 * h);
+namespace {
+
+/// The entries of the moved unknowns become those of `value` of their nodes.
+template <class Value>
+void put(const Supports& supports, const Value& value, Vector& values) {
+  for (std::size_t m = 0; m < supports.moved.size(); ++m) {
+    const Vec3 found = value(supports.moved[m]);
     for (int c = 0; c < 3; ++c) {
-      const int k = 3 * moved[m].node + c;
-      if (moved_by[static_cast<std::size_t>(k)] == static_cast<int>(m)) velocity[k] = rate[c];
+      const int k = 3 * supports.moved[m].node + c;
+      if (supports.moved_by[static_cast<std::size_t>(k)] == static_cast<int>(m)) values[k] = found[c];
     }
   }
+}
+
+}  // namespace
+
+void Supports::set_off(double time, double dt, Vector& velocity) const {
+  const double h = 0.1 * dt;
+  const auto rate = [&](const MovedNode& node) -> Vec3 {
+    return (4 * node.at(time + h) - 3 * node.at(time) - node.at(time + 2 * h)) / (2 * h);
+  };
+  put(*this, rate, velocity);
+}
+
+void Supports::set_off_rates(double time, double dt, Vector& acceleration) const {
+  const double h = 0.1 * dt;
+  const auto rate = [&](const MovedNode& node) -> Vec3 {
+    return (2 * node.at(time) - 5 * node.at(time + h) + 4 * node.at(time + 2 * h) - node.at(time + 3 * h)) / (h * h);
+  };
+  put(*this, rate, acceleration);
 }
 
 void Supports::drive(double time, double shift, double dt, Vector& velocity, Vector& acceleration, Mask& given) const {

@@ -28,6 +28,8 @@ struct Supports {
   Vector at(double share, double time) const;
   /// Velocities of the moved unknowns just after a time, by one-sided differences; entries of others stay.
   void set_off(double time, double dt, Vector& velocity) const;
+  /// Their accelerations just after a time, by one-sided differences of second order over a tenth of dt.
+  void set_off_rates(double time, double dt, Vector& acceleration) const;
   /// Velocities of the moved unknowns at a time and their accelerations at time + shift, by central differences over a
   /// fifth of dt: of second order in dt, as the methods that use them. Entries of other unknowns stay; `given` marks
   /// what is set.

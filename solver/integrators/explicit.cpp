@@ -179,6 +179,7 @@ void run_explicit(Run& run) {
     ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();
+    supports.set_off_rates(run.now.time, step.dt, run.now.a);
     method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
     run.set_reactions(run.newton.forces().residual(), supports);
     if (s == 0 && !run.sound_start()) return;

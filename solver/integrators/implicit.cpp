@@ -270,16 +270,9 @@ void run_implicit(Run& run) {
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     run.now.step = static_cast<int>(s);
-    const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, run.now.time}};
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
-    if (s == 0) run.hold_start(supports);
-    if (s == 0) supports.set_off(run.now.time, step.dt, run.now.v);
-    if (s == 0) run.settle_pressures();
-    // Loads and supports may jump between steps, and the acceleration with them.
-    run.now.a = run.newton.initial_acceleration(run.now.u, run.now.v, loads, supports);
-    run.acceleration_now = {};
-    run.accelerated = run.now.time;
-    run.set_reactions(run.newton.forces().residual(), supports);
+    if (s == 0) run.begin_motion(step, supports);
+    run.begin_balance(step, supports);  // loads and supports may jump between steps, and the acceleration with them
     if (s == 0 && !run.sound_start()) return;
     run.mark();
     if (s == 0 && !run.accept()) return;

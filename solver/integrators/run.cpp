@@ -46,19 +46,6 @@ void Run::hold(const Step& step, const Mask& fixed) {
   outcome.notes.push_back(fmt::format("step '{}': {}", step.name, what));
 }
 
-void Run::hold_start(const Supports& supports) {
-  const Vector given = now.v;
-  for (std::size_t k = 0; k < supports.fixed.size(); ++k)
-    if (supports.fixed[k] && supports.moved_by[k] < 0) now.v[static_cast<Eigen::Index>(k)] = 0;
-  supports.slides.project(now.v);
-  long nodes = 0;
-  for (Eigen::Index k = 0; k < given.size(); k += 3)
-    nodes += (given - now.v).segment<3>(k).norm() > 1e-12 * given.segment<3>(k).norm();
-  if (nodes > 0)
-    outcome.notes.push_back(
-        fmt::format("the initial velocity is left out where supports hold the body: at {} nodes", nodes));
-}
-
 void Run::refuse_pushed_bodies() {
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
@@ -69,42 +56,6 @@ void Run::refuse_pushed_bodies() {
   }
   free = {};
   now.step = 0;
-}
-
-bool Run::sound_start() {
-  const Assembled& found = newton.forces().found;
-  if (found.finite && std::isfinite(found.energy)) {
-    if (equations.has_history()) equations.end_step(now.u);  // a sudden strain
-    return true;
-  }
-  IncrementResult result;
-  result.worst_element = found.smallest_J_element;
-  result.worst_J = found.smallest_J;
-  result.stop = newton.state_verdict() == Stop::inverted_element ? Stop::inverted_element : Stop::diverged;
-  explain(*this, result, -1);
-  outcome.diagnosis +=
-      "; the run begins in this state, where the law has no forces: change initialDisplacement, or take a law that "
-      "survives inversion (neoHookeanMaterial form=\"stable\")";
-  return false;
-}
-
-void Run::settle_pressures() {
-  if (now.u.isZero(0)) return;
-  if (newton.settle_pressures(now.u) > 0)
-    outcome.notes.push_back(
-        "the initial displacement says nothing of the pressure in incompressible regions: the first state has none "
-        "there, and its stress and acceleration are without it. If it changes their volume, the first step takes that "
-        "back, and the energy jumps");
-}
-
-bool Run::start_at_rest() {
-  refuse_pushed_bodies();
-  settle_pressures();
-  newton.prepare(now.u, {});
-  newton.rest();
-  if (!sound_start()) return false;
-  mark();
-  return accept();
 }
 
 double next_stop(const Step& step, double from, double to) {

@@ -48,6 +48,11 @@ struct Run {
   void hold(const Step& step, const Mask& fixed);
   /// Takes the initial velocity away from what the supports hold, and notes that.
   void hold_start(const Supports& supports);
+  /// Dynamics: the motion at the start of the first step is what the supports and incompressible regions make of the
+  /// initial one; notes say what was changed. Throws Error where the initial one changes volumes that are kept.
+  void begin_motion(const Step& step, const Supports& supports);
+  /// The accelerations of the present state, and the pressures of incompressible regions with them.
+  void begin_balance(const Step& step, const Supports& supports);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
   void refuse_pushed_bodies();
   /// Displacements that a run begins with bring their pressures along.
@@ -75,6 +80,7 @@ struct Run {
 
  private:
   void measure_energies();
+  void refuse_volume_changes();
 };
 
 /// The way of loads and supports over a step, or a part of it, for equilibrium without inertia.

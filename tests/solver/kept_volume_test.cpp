@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What runs of incompressible bodies begin with: pressures, accelerations, and motions that keep volumes.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "tests/solver/laws.hpp"
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe {
+namespace {
+
+using namespace testing;
+
+constexpr double density = 3;
+
+std::shared_ptr<const Law> incompressible() {
+  return law_of("neoHookeanMaterial", {{"youngModulus", 1000.0}, {"incompressible", true}, {"poissonRatio", Value{}}});
+}
+
+Model body_of(Mesh mesh, double dt = 1e-3) {
+  Model model = make_model(std::move(mesh), {}, density);
+  model.regions[0].law = incompressible();
+  model.formulation = Formulation::mixed;
+  model.settings.integrator = Integrator::generalized_alpha;
+  model.settings.tolerance = 1e-12;
+  model.steps[0].dt = dt;
+  return model;
+}
+
+Model block(double dt = 1e-3) { return body_of(unit_mesh(2, CellKind::tet10), dt); }
+
+Slide wall(const Mesh& mesh, int axis, double place) {
+  return {.name = "wall",
+          .nodes = points_where(mesh, [=](const Vec3& x) { return std::abs(x[axis] - place) < 1e-9; }),
+          .normal = Vec3::Unit(axis)};
+}
+
+Points field(const Mesh& mesh, const std::function<Vec3(const Vec3&)>& value) {
+  Points points(mesh.point_count(), 3);
+  for (int n = 0; n < mesh.point_count(); ++n) points.row(n) = value(mesh.points.row(n).transpose()).transpose();
+  return points;
+}
+
+/// The state that a run begins with, and what is said of it.
+Outcome first(const Model& model) {
+  return solve(model, [](const State&) { return false; });
+}
+
+double furthest(const Points& a, const Points& b) { return (a - b).cwiseAbs().maxCoeff(); }
+
+double furthest_pressure(const Mesh& mesh, const State& state, const std::function<double(const Vec3&)>& expected) {
+  double furthest = 0;
+  for (int n = 0; n < mesh.point_count(); ++n)
+    furthest = std::max(
+        furthest, std::abs(state.pressure[static_cast<std::size_t>(n)] - expected(mesh.points.row(n).transpose())));
+  return furthest;
+}
+
+// Between walls and on a floor nothing can move: p = rho g (1 - Z).
+TEST(IncompressibleStart, AColumnBetweenWallsBeginsWithThePressureOfItsWeight) {
+  Model model = block();
+  model.steps[0].gravity = Vec3(0, 0, -10);
+  for (const auto& [axis, place] : {std::pair{0, 0.0}, {0, 1.0}, {1, 0.0}, {1, 1.0}, {2, 0.0}})
+    model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+  const State state = first(model).state;
+  EXPECT_LT(state.acceleration.cwiseAbs().maxCoeff(), 1e-10 * 10);
+  const auto weight = [](const Vec3& X) { return density * 10 * (1 - X[2]); };
+  EXPECT_LT(furthest_pressure(*model.mesh, state, weight), 1e-10 * density * 10);
+}
+
+// A piston of its own material: a = P / (rho L) everywhere, and p = P (1 - X / L).
+TEST(IncompressibleStart, ALoadOnAFaceBetweenWallsPushesAllAlike) {
+  Model model = block();
+  for (const auto& [axis, place] : {std::pair{1, 0.0}, {1, 1.0}, {2, 0.0}, {2, 1.0}})
+    model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+  FaceLoad load{.name = "push", .pressures = {12}};
+  load.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
+  model.steps[0].face_loads = {load};
+  const State state = first(model).state;
+  EXPECT_LT(furthest(state.acceleration, field(*model.mesh, [](const Vec3&) { return Vec3(12 / density, 0, 0); })),
+            1e-10);
+  EXPECT_LT(furthest_pressure(*model.mesh, state, [](const Vec3& X) { return 12 * (1 - X[0]); }), 1e-10 * 12);
+}
+
+// v = g (X, 0, -Z) keeps volumes now, but goes on doing so only with div a = tr (grad v)^2 = 2 g^2: by forces
+// rho a + grad p of a = (2 g^2 X, 0, 0) and p = q (1 - X), which is zero at the free face.
+TEST(IncompressibleStart, AMotionGoesOnKeepingVolumes) {
+  constexpr double g = 5, q = 7;
+  Model model = block();
+  for (const auto& [axis, place] : {std::pair{0, 0.0}, {1, 0.0}, {1, 1.0}, {2, 0.0}})
+    model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+  model.initial_velocity = field(*model.mesh, [](const Vec3& X) { return Vec3(g * X[0], 0, -g * X[2]); });
+  BodyForce force{.name = "f"};
+  force.function = [](const Vec3& X, double) { return Vec3(density * 2 * g * g * X[0] - q, 0, 0); };
+  force.elements = model.regions[0].elements;
+  model.steps[0].body_forces = {force};
+  FaceLoad load{.name = "top"};
+  load.pressure_function = [](const Vec3& X, double) { return q * (1 - X[0]); };
+  load.faces = faces_where(*model.mesh, [](const Vec3& x) { return x[2] > 1 - 1e-9; });
+  model.steps[0].face_loads = {load};
+  const Outcome outcome = first(model);
+  const State& state = outcome.state;
+  const Points expected = field(*model.mesh, [](const Vec3& X) { return Vec3(2 * g * g * X[0], 0, 0); });
+  EXPECT_LT(furthest(state.acceleration, expected), 1e-9 * 2 * g * g);
+  EXPECT_LT(furthest_pressure(*model.mesh, state, [](const Vec3& X) { return q * (1 - X[0]); }), 1e-8);
+  EXPECT_LT(furthest(state.velocity, model.initial_velocity), 1e-12 * g);
+}
+
+// All faces but X = 1 are turned about the axis (0, 0, 1) at the origin. With forces -rho w^2 r no pressure is needed.
+TEST(IncompressibleStart, ASpinOfTheSupportsPullsAllInwards) {
+  constexpr double w = 4;
+  Model model = block();
+  Prescribed turn{.name = "turn", .values = {Vec3::Zero()}};
+  turn.nodes =
+      points_where(*model.mesh, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.tail(2).maxCoeff() > 1 - 1e-9; });
+  turn.function = [](const Vec3& X, double t) { return Vec3(Eigen::AngleAxisd(w * t, Vec3::UnitZ()) * X - X); };
+  model.steps[0].prescribed = {turn};
+  model.initial_velocity = field(*model.mesh, [](const Vec3& X) { return Vec3(-w * X[1], w * X[0], 0); });
+  BodyForce force{.name = "f"};
+  force.function = [](const Vec3& X, double) { return Vec3(-density * w * w * X[0], -density * w * w * X[1], 0); };
+  force.elements = model.regions[0].elements;
+  model.steps[0].body_forces = {force};
+  const State state = first(model).state;
+  const Points expected = field(*model.mesh, [](const Vec3& X) { return Vec3(-w * w * X[0], -w * w * X[1], 0); });
+  // One-sided differences over a tenth of dt: 11/12 (w h)^2 of the supports' acceleration.
+  EXPECT_LT(furthest(state.acceleration, expected), 1e-5 * w * w);
+  EXPECT_LT(furthest(state.velocity, model.initial_velocity), 2e-7 * w);  // and (w h)^2 / 3 of their velocity
+  EXPECT_LT(furthest_pressure(*model.mesh, state, [](const Vec3&) { return 0.0; }), 1e-5 * density * w * w);
+}
+
+/// A block between walls that becomes longer and lower.
+Model stretching(double dt, int count) {
+  Model model = block(dt);
+  model.steps[0].count = count;
+  for (const auto& [axis, place] : {std::pair{0, 0.0}, {1, 0.0}, {1, 1.0}, {2, 0.0}})
+    model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+  model.initial_velocity = field(*model.mesh, [](const Vec3& X) { return Vec3(5 * X[0], 0, -5 * X[2]); });
+  return model;
+}
+
+double furthest(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0;
+  for (std::size_t n = 0; n < a.size(); ++n) largest = std::max(largest, std::abs(a[n] - b[n]));
+  return largest;
+}
+
+// Newmark's method forgets nothing: what the first state is wrong by swings on undamped, and is as large in every
+// other state, whatever the step.
+TEST(IncompressibleStart, PressuresAreOfSecondOrderInTimeFromThere) {
+  std::vector<std::vector<double>> course[4];
+  for (std::size_t fine = 0; fine < 4; ++fine) {
+    Model model = stretching(0.0005 / (1 << fine), 4 << fine);
+    model.settings.integrator = Integrator::newmark;
+    solve(model, [&](const State& state) {
+      course[fine].push_back(state.pressure);
+      return true;
+    });
+  }
+  for (const std::size_t time : {2, 4}) {
+    const auto difference = [&](std::size_t k) { return furthest(course[k][time << k], course[k + 1][2 * time << k]); };
+    // Of differences; those of the next pair of steps lie as much nearer to 2 again.
+    EXPECT_NEAR(std::log2(difference(1) / difference(2)), 2, 0.15);
+  }
+  // The stress grows with 2 mu times the rate, by a half percent of the pressure in a step.
+  const std::vector<double>& begin = course[3][0];
+  EXPECT_LT(furthest(course[3][1], begin), 0.01 * furthest(begin, std::vector<double>(begin.size(), 0)));
+}
+
+}  // namespace
+}  // namespace msml::fe
