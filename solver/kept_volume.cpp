@@ -80,8 +80,9 @@ VolumeChange judge(const Elements& elements, const Mask& open, const BlockMatrix
   double largest = -1;
   for (std::size_t e = 0; e < numbering.elements.size(); ++e)
     for (std::size_t c = 4 * e; c < 4 * e + 4; ++c)
-      if (numbering.pressure_nodes[c] == worst && std::abs(change_of(e)) > largest) {
-        largest = std::abs(change_of(e));
+      if (numbering.pressure_nodes[c] == worst && !(std::abs(change_of(e)) <= largest)) {
+        found.change = change_of(e);
+        largest = std::abs(found.change);
         found.element = numbering.elements[e];
       }
   return found;

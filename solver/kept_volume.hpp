@@ -38,10 +38,12 @@ class Saddle {
 
 /// How much a motion changes volumes that are kept.
 struct VolumeChange {
-  double relative = 0;  ///< the largest change of volume beside the largest gradient of the motion; NaN: no number
-  double change = 0;    ///< that change, of the unit volume around a corner
-  double gradient = 0;  ///< that gradient: root mean square over an element
-  int element = -1;     ///< cell id: where the change is largest
+  /// The largest change around a corner, of the volume there, beside the largest gradient of the motion (root mean
+  /// square over an element). NaN: the field makes no numbers.
+  double relative = 0;
+  double gradient = 0;  ///< that gradient
+  int element = -1;     ///< cell id: of the elements at that corner the one that changes most
+  double change = 0;    ///< of its own volume
 };
 
 /// Of the displacement u from rest.

@@ -104,8 +104,10 @@ class Newton {
     bool done = true;                       ///< false: the equations are singular, or lead nowhere; nothing changed
     double displacement = 0, velocity = 0;  ///< largest change beside the largest value; 0: all were kept already
   };
-  /// Changes u and v as little as may be, in the norm of the mass, so that c(u) = 0 and B^T v = 0.
-  Kept keep_volumes(Vector& u, Vector& v, const Supports& supports);
+  /// Changes u as little as may be, in the norm of the mass, so that c(u) = 0, and makes v what is left of the velocity
+  /// `before` once supports have suddenly the velocities that v has there: M (v - before) = -B y at free unknowns with
+  /// B^T v = 0.
+  Kept keep_volumes(Vector& u, Vector& v, Vector before, const Supports& supports);
   /// Mixed elements: gives u the pressures that belong to its displacements, int N_c (g(F) - p / k) = 0 for each corner
   /// (see MixedElements). Returns how many are not determined so, as k is infinite: these keep their values. Nothing
   /// changes where the forces at u are not finite.

@@ -96,7 +96,7 @@ Vector Newton::initial_acceleration(Vector& u, const Vector& v, const ScaledLoad
   return a;
 }
 
-Newton::Kept Newton::keep_volumes(Vector& u, Vector& v, const Supports& supports) {
+Newton::Kept Newton::keep_volumes(Vector& u, Vector& v, Vector before, const Supports& supports) {
   const Numbering& numbering = equations_.numbering();
   if (!numbering.mixed() || (largest(numbering, u) == 0 && v.isZero(0))) return {};
   factor_known_ = false;
@@ -106,32 +106,35 @@ Newton::Kept Newton::keep_volumes(Vector& u, Vector& v, const Supports& supports
   Saddle saddle(equations_, supports, open, *linear_, effective_);
   const Vector zero = Vector::Zero(u.size());
   /// Adds the smallest motion that takes `rows` of c or its rate away; its size, infinite where there is none.
-  const auto correct = [&](const Vector& rows, Vector& motion) {
+  const auto correct = [&](const Vector& rows, const Vector& given, Vector& motion) {
     Vector right = zero, both;
     take_rows(rows, open, right);
-    if (!solved(saddle.factor(tangent_), saddle, right, zero, both)) return std::numeric_limits<double>::infinity();
+    if (!solved(saddle.factor(tangent_), saddle, right, given, both)) return std::numeric_limits<double>::infinity();
     both.tail(both.size() - 3 * numbering.body_nodes()).setZero();
     motion += both;
     return largest(numbering, both);
   };
-  Vector placed = u, moving = v, rates;
+  Vector placed = u, rates, jump = zero;
   double change = largest(numbering, u) > 0 ? 1 : 0;
   for (int round = 0; round < most_rounds && change > unseen * largest(numbering, placed); ++round) {
-    change = correct(forces_.internal, placed);
+    change = correct(forces_.internal, zero, placed);
     if (!std::isfinite(change)) return {.done = false};
     prepare(placed, {});
     if (!forces_.internal.allFinite()) return {.done = false};
   }
   if (change > 1e-9 * largest(numbering, placed)) return {.done = false};
-  multiply(tangent_, v, rates);
-  if (!v.isZero(0) && !std::isfinite(correct(rates, moving))) return {.done = false};
+  supports.slides.project(before);
+  for (std::size_t k = 0; k < supports.fixed.size(); ++k)
+    if (const auto i = static_cast<Eigen::Index>(k); supports.fixed[k]) jump[i] = v[i] - before[i];
+  multiply(tangent_, before, rates);
+  if (!v.isZero(0) && !std::isfinite(correct(rates, jump, before))) return {.done = false};
   const auto share = [&](const Vector& before, const Vector& after) {
     const double size = std::max(largest(numbering, before), largest(numbering, after));
     return size > 0 ? largest(numbering, after - before) / size : 0;
   };
-  const Kept kept{.displacement = share(u, placed), .velocity = share(v, moving)};
+  const Kept kept{.displacement = share(u, placed), .velocity = share(v, before)};
   u = placed;
-  v = moving;
+  v = before;
   return kept;
 }
 

@@ -13,8 +13,8 @@ namespace msml::fe {
 namespace {
 
 /// Of the change of volume beside the largest gradient. A field that keeps volumes changes them by its interpolation on
-/// the mesh alone, a few thousandths at elements that follow it within a tenth of its gradients; one that does not by
-/// about its gradients.
+/// the mesh alone: a twist by 0.8 % where it turns by 45 degrees over an element, and four times less on a mesh of half
+/// the size. One that does not keep them changes them by about its gradients.
 constexpr double tolerable_change = 0.01;
 constexpr double noted_correction = 1e-6;  // of an initial displacement or velocity, beside the largest
 
@@ -85,9 +85,10 @@ void Run::refuse_volume_changes() {
 
 void Run::begin_motion(const Step& step, const Supports& supports) {
   refuse_volume_changes();
+  const Vector before = now.v;
   hold_start(supports);
   supports.set_off(now.time, step.dt, now.v);
-  const Newton::Kept kept = newton.keep_volumes(now.u, now.v, supports);
+  const Newton::Kept kept = newton.keep_volumes(now.u, now.v, before, supports);
   if (!kept.done)
     outcome.notes.emplace_back(
         "the start does not keep the volume of incompressible regions, and the supports let no motion do so: the first "
@@ -100,7 +101,7 @@ void Run::begin_motion(const Step& step, const Supports& supports) {
                       what, share, supports.moved.empty() ? "" : ", also where the supports set them off"));
   };
   note("displacement", kept.displacement);
-  note("velocity", kept.velocity);
+  note("velocity", before.isZero(0) ? 0 : kept.velocity);
   settle_pressures();
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What runs of incompressible bodies begin with: pressures, accelerations, and motions that keep volumes.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
+#include "msml/core/error.hpp"
 #include "tests/solver/laws.hpp"
 #include "tests/solver/meshes.hpp"
 
@@ -165,6 +167,88 @@ TEST(IncompressibleStart, PressuresAreOfSecondOrderInTimeFromThere) {
   // The stress grows with 2 mu times the rate, by a half percent of the pressure in a step.
   const std::vector<double>& begin = course[3][0];
   EXPECT_LT(furthest(course[3][1], begin), 0.01 * furthest(begin, std::vector<double>(begin.size(), 0)));
+}
+
+/// The message that refuses a model; "" if it runs.
+std::string refusal(const Model& model) {
+  try {
+    first(model);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+Vec3 twisted(const Vec3& X, double angle) {
+  const Vec3 axis(0.5, 0.5, 0);
+  return axis + Eigen::AngleAxisd(angle * X[2], Vec3::UnitZ()) * (X - axis);
+}
+
+TEST(IncompressibleStart, RefusesDisplacementsThatChangeVolumes) {
+  Model model = block();
+  model.initial_displacement = field(*model.mesh, [](const Vec3& X) { return Vec3(0.3 * X[0], 0, 0); });
+  const std::string message = refusal(model);
+  EXPECT_THAT(message, ::testing::HasSubstr("initialDisplacement: it changes volumes"));
+  EXPECT_THAT(message, ::testing::HasSubstr("by 0.3 of them, beside gradients of 0.3"));
+}
+
+// However small: it is its own gradient that it is measured by.
+TEST(IncompressibleStart, RefusesVelocitiesThatChangeVolumesWhereTheyDo) {
+  Model model = block();
+  model.initial_velocity = field(*model.mesh, [](const Vec3& X) { return Vec3(1e-6 * X[0] * X[0], 7, 0); });
+  const std::string message = refusal(model);
+  EXPECT_THAT(message, ::testing::HasSubstr("initialVelocity: it changes volumes"));
+  const std::size_t at = message.find("at (");
+  ASSERT_NE(at, std::string::npos);
+  EXPECT_GT(std::stod(message.substr(at + 4)), 0.5);  // X of the element: the divergence is 2e-6 X
+}
+
+TEST(IncompressibleStart, KeepsRigidMotionsAsTheyAre) {
+  Model model = block();
+  const Eigen::AngleAxisd turn(2, Vec3(1, 2, 3).normalized());
+  model.initial_displacement = field(*model.mesh, [&](const Vec3& X) { return Vec3(turn * X - X + Vec3(1e4, 0, 0)); });
+  model.initial_velocity = field(*model.mesh, [&](const Vec3& X) { return Vec3(1, 2, 3).cross(turn * X) * 1e-3; });
+  const Outcome outcome = first(model);
+  EXPECT_TRUE(outcome.notes.empty());
+  EXPECT_LT(furthest(outcome.state.velocity, model.initial_velocity), 1e-10);
+}
+
+// A twist keeps volumes, but its interpolation on the mesh does so only nearly: what is left is taken away, and less of
+// it on a finer mesh.
+TEST(IncompressibleStart, TakesAwayWhatTheMeshMakesOfATwist) {
+  double change[2];
+  for (const int n : {2, 4}) {
+    Model model = body_of(unit_mesh(n, CellKind::tet10));
+    model.initial_displacement = field(*model.mesh, [](const Vec3& X) { return Vec3(twisted(X, 0.6) - X); });
+    model.initial_velocity = field(
+        *model.mesh, [](const Vec3& X) { return Vec3((twisted(X, 0.6 + 1e-4) - twisted(X, 0.6 - 1e-4)) / 2e-4); });
+    const Outcome outcome = first(model);
+    EXPECT_THAT(outcome.notes, ::testing::Contains(::testing::HasSubstr("the initial displacement is changed by")));
+    EXPECT_THAT(outcome.notes, ::testing::Contains(::testing::HasSubstr("the initial velocity is changed by")));
+    change[n == 4] = furthest(outcome.state.displacement, model.initial_displacement);
+    Model again = model;
+    again.initial_displacement = outcome.state.displacement;
+    again.initial_velocity = outcome.state.velocity;
+    EXPECT_TRUE(first(again).notes.empty());
+  }
+  EXPECT_LT(change[1], change[0] / 4);
+}
+
+// A piston that starts at once drives all that is before it.
+TEST(IncompressibleStart, SupportsThatMoveSetTheBodyOff) {
+  Model model = block();
+  for (const auto& [axis, place] : {std::pair{1, 0.0}, {1, 1.0}, {2, 0.0}, {2, 1.0}})
+    model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+  Prescribed piston{.name = "piston", .values = {Vec3::Zero()}};
+  piston.nodes = points_where(*model.mesh, [](const Vec3& x) { return x[0] < 1e-9; });
+  piston.components[1] = piston.components[2] = false;
+  piston.function = [](const Vec3&, double t) { return Vec3(0.3 * t + 5 * t * t, 0, 0); };
+  model.steps[0].prescribed = {piston};
+  const State state = first(model).state;
+  EXPECT_LT(furthest(state.velocity, field(*model.mesh, [](const Vec3&) { return Vec3(0.3, 0, 0); })), 1e-9);
+  EXPECT_LT(furthest(state.acceleration, field(*model.mesh, [](const Vec3&) { return Vec3(10, 0, 0); })), 1e-6);
+  EXPECT_NEAR(state.reaction.col(0).sum(), density * 10, 1e-6);  // it pushes the whole mass
+  EXPECT_LT(furthest_pressure(*model.mesh, state, [](const Vec3& X) { return density * 10 * (1 - X[0]); }), 1e-6);
 }
 
 }  // namespace
