@@ -49,6 +49,11 @@ LinearStatus solve_singular(const BlockMatrix& A, LinearSystem& shifted, const M
   return LinearStatus::done;
 }
 
+/// What an iterative solver leaves across planes, residuals do not show: it would grow from step to step.
+void keep_in_planes(const Increment& increment, Vector& step) {
+  if (increment.slides && step.size() > 0) increment.slides->project(step);
+}
+
 }  // namespace
 
 LinearStatus Newton::factor(const Increment& increment) {
@@ -130,6 +135,7 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   ++solves_;
   const double tolerance = linear_tolerance(right, increment.fixed);
   status = whole_taken_ ? unsymmetric_->solve(right, tolerance, step) : solve(increment, right, tolerance, step);
+  keep_in_planes(increment, step);
   factor_known_ = status == LinearStatus::done;
   factor_velocity_ = increment.motion.velocity_factor;
   factor_acceleration_ = increment.motion.acceleration_factor;
@@ -148,6 +154,7 @@ bool Newton::correction(const Increment& increment, const Vector& residual, Vect
   constexpr double rough = 0.1;  // one figure is enough to know how much is missing
   const LinearStatus status =
       whole_taken_ ? unsymmetric_->solve(right, rough, step) : solve(increment, right, rough, step);
+  keep_in_planes(increment, step);
   return status == LinearStatus::done && step.allFinite();
 }
 

@@ -60,10 +60,10 @@ void Run::refuse_pushed_bodies() {
 
 double next_stop(const Step& step, double from, double to) {
   double next = to;
-  const double least = from + 1e-9 * step.dt;
+  const double least = from + 1e-9 * step.dt, most = to - 1e-9 * step.dt;  // round-off apart from the ends: no step
   const auto meet = [&](const std::vector<double>& kinks) {
     for (const double kink : kinks)
-      if (kink > least) next = std::min(next, kink);
+      if (kink > least && kink < most) next = std::min(next, kink);
   };
   const auto look = [&](const auto& conditions) {
     for (const auto& condition : conditions) meet(condition.factor.kinks);

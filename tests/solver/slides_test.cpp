@@ -58,6 +58,27 @@ TEST(Slides, ATurnedSceneHasTheTurnedAnswer) {
   }
 }
 
+// What an iterative solver leaves across the planes must not add up over steps: round-off alone, below 1e-12 of the
+// body.
+TEST(Slides, NodesStayInTheirPlanesWithEverySolver) {
+  for (const Preconditioner preconditioner :
+       {Preconditioner::jacobi, Preconditioner::incomplete_cholesky, Preconditioner::multigrid}) {
+    Model model = quarter(turn(), Integrator::newmark);
+    model.settings.linear_solver = LinearSolver::cg;
+    model.settings.preconditioner = preconditioner;
+    model.settings.tolerance = 1e-6;
+    model.steps[0].count = 40;
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    const Points back = outcome.state.displacement * turn();
+    const Mesh box = box_mesh(3, 2, 2, {3, 1, 2}, CellKind::tet4);
+    for (int c = 0; c < 3; ++c)
+      for (const int node : points_where(box, [c](const Vec3& x) { return x[c] < 1e-9; }))
+        EXPECT_LT(std::abs(back(node, c)), 1e-12) << static_cast<int>(preconditioner) << ", node " << node;
+    EXPECT_GT(back.norm(), 0.01);
+  }
+}
+
 TEST(Slides, TwoPlanesLeaveALineAndThreeHold) {
   const Outcome outcome = solve(quarter(turn(), Integrator::static_), {});
   const Points back = outcome.state.displacement * turn();  // in the box's own axes
