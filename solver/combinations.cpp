@@ -44,6 +44,10 @@ void check_integrator(const Settings& s, const Tell& tell) {
     tell(Error(fmt::format("arcLength follows static equilibria, but timeIntegration is {}: choose static",
                            name(s.integrator))));
   tell_of_number("arcSteps", s.arc_length.steps, false, tell);
+  if (s.arc_length.on && s.newton_iterations == 1)
+    tell(
+        Error("newtonIterations = 1 does not go with arcLength, which finds the load and the displacement of a step "
+              "together, in several iterations: take 2 or more, such as the usual 25"));
   if (s.adaptive_step && is_explicit(s.integrator))
     tell(
         Error(fmt::format("adaptiveStep = true does not go with the explicit timeIntegration = {}, whose dt is that "

@@ -37,8 +37,8 @@ void check_gravity(const Record& step, bool scalar, CellKind kind, const fe::Tel
 /// Throws Error at the region's place where its indices, listed in place, count faces.
 void check_region_indices(const Record& region);
 
-/// Throws Error at the solver's place where all numbers of all loads are 0, but arc length is to follow them.
-void check_arc_loads(const Record& args, const Surroundings& around);
+/// Tells, where arc length is to follow the loads, of steps (at their places) all of whose loads are 0.
+void check_arc_loads(const Record& args, const Surroundings& around, const fe::Tell& tell);
 
 /// Its label, or "region2" for the second without one.
 std::string region_name(const Record& region, std::size_t position);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "operators/simulate/build_model.hpp"
+#include "operators/simulate/conditions/condition.hpp"
 #include "operators/simulate/records.hpp"
 
 namespace msml::simulation {
@@ -31,21 +32,30 @@ bool weighs(const Record& step, const Surroundings& around) {
   return slot < 0 || (!step.given[static_cast<std::size_t>(slot)] ? solid : pulls(step));
 }
 
+/// A condition that may pull in the step of a name.
+bool pulls_in(const Placed& placed, const std::string& step) {
+  return (placed.step.empty() || placed.step == step) &&
+         std::ranges::find(loads, placed.record->tag()) != std::end(loads) && pulls(*placed.record);
+}
+
 }  // namespace
 
-void check_arc_loads(const Record& args, const Surroundings& around) {
+void check_arc_loads(const Record& args, const Surroundings& around, const fe::Tell& tell) {
   const Record* solver = first_of(args, "solver");
   if (solver == nullptr || !around.kind || around.settings == nullptr || !around.settings->arc_length.on ||
       around.settings->integrator != fe::Integrator::static_)
     return;
-  for (const Record* step : all_of(args, "step"))
-    if (weighs(*step, around)) return;
-  for (const Record* condition : all_of(args, "constraint"))
-    if (condition->tag().starts_with("spring"))
-      return;  // those that change in time pull
-    else if (std::ranges::find(loads, condition->tag()) != std::end(loads) && pulls(*condition))
-      return;
-  refuse(*solver, "arcLength scales the loads, but there is none: give a load, or take arcLength=\"false\"");
+  const std::vector<const Record*> steps = all_of(args, "step");
+  const std::vector<std::string> names = step_names(args);
+  const std::vector<Placed> conditions = placed_conditions(args);
+  for (std::size_t s = 0; s < steps.size(); ++s) {
+    check_timeless(*steps[s], tell);
+    const bool loaded = std::ranges::any_of(conditions, [&](const Placed& p) { return pulls_in(p, names[s]); });
+    if (loaded || weighs(*steps[s], around)) continue;
+    const std::string what = "arcLength scales the loads, but there is none";
+    tell(steps.size() == 1 ? fault_of(*solver, what + ": give a load, or take arcLength=\"false\"")
+                           : fault_of(*steps[s], what + " in this step: give it one, or take arcLength=\"false\""));
+  }
 }
 
 }  // namespace msml::simulation

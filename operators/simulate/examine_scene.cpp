@@ -216,7 +216,7 @@ std::vector<Finding> examine_filled(const Record& args, bool every_tag) {
   examine_outputs(args, around, fault);
   if (every_tag) {
     examine_forward_euler(args, outline, fault);
-    attempt(args, fault, [&] { check_arc_loads(args, around); });
+    check_arc_loads(args, around, fault);
   }
   if (outline.settings) find_idle(args, around, [&](const Error& error) { found.push_back({error, Kind::idle}); });
   return found;

@@ -29,7 +29,10 @@ bool implicit(const Beside& b) { return !fe::is_explicit(b.settings.integrator);
 bool newmark(const Beside& b) { return b.settings.integrator == fe::Integrator::newmark; }
 bool may_grow(const Beside& b) { return newmark(b) || !implicit(b); }
 bool along_an_arc(const Beside& b) { return b.settings.arc_length.on; }
-bool iterates(const Beside& b) { return implicit(b) && b.settings.linear_solver != fe::LinearSolver::direct; }
+bool iterates(const Beside& b) {
+  return implicit(b) && !along_an_arc(b) && b.settings.linear_solver != fe::LinearSolver::direct;
+}
+bool searches(const Beside& b) { return implicit(b) && !along_an_arc(b); }
 bool clamped(const Beside& b) { return text_of(b.record, "inversion") == "clamped"; }
 bool ramps(const Beside& b) {
   const Record& record = b.record;
@@ -42,6 +45,7 @@ bool ramps(const Beside& b) {
 }
 
 constexpr const char* implicit_words = "an implicit timeIntegration";
+constexpr const char* searching_words = "an implicit timeIntegration without arcLength";
 constexpr const char* dynamic_words = "a dynamic timeIntegration";
 
 constexpr Need table[] = {
@@ -61,11 +65,12 @@ constexpr Need table[] = {
     {"solver", "largestLoadFactor", along_an_arc, "arcLength=\"true\""},
     {"solver", "largestDisplacement", along_an_arc, "arcLength=\"true\""},
     {"solver", "preconditioner", iterates, "a linearSolver that iterates"},
-    {"solver", "linearSolver", implicit, implicit_words},
+    {"solver", "linearSolver", searches,
+     "an implicit timeIntegration without arcLength, which has a solver of its own"},
     {"solver", "newtonIterations", implicit, implicit_words},
     {"solver", "tolerance", implicit, implicit_words},
-    {"solver", "lineSearch", implicit, implicit_words},
-    {"solver", "definiteness", implicit, implicit_words},
+    {"solver", "lineSearch", searches, searching_words},
+    {"solver", "definiteness", searches, searching_words},
     {"solver", "untangle", implicit, implicit_words},
     {"solver", "allowUnstable", may_grow, "timeIntegration=\"Newmark\" or an explicit one"},
     {"linearElasticMaterial", "tangent", [](const Beside& b) { return text_of(b.record, "strain") != "small"; },

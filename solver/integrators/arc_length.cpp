@@ -14,14 +14,18 @@ namespace {
 
 constexpr int good_iterations = 5, most_cuts = 12;
 
-double largest_displacement(const Vector& u) {
+/// Unknowns that are displacements (or values); pressures come after them.
+Eigen::Index moving(const Run& run) { return 3 * static_cast<Eigen::Index>(run.equations.numbering().body_nodes()); }
+
+double largest_displacement(const Run& run, const Vector& u) {
   double largest = 0;
-  for (Eigen::Index k = 0; k < u.size(); k += 3) largest = std::max(largest, u.segment<3>(k).norm());
+  for (Eigen::Index k = 0; k < moving(run); k += 3) largest = std::max(largest, u.segment<3>(k).norm());
   return largest;
 }
 
 /// Crisfield's method (1981, doi 10.1016/0045-7949(81)90108-5) in its cylindrical form: |du| = length over each step,
-/// load factor free. The linear systems are indefinite past a limit point.
+/// load factor free. The linear systems are indefinite past a limit point. Lengths are those of displacements: the
+/// pressures of mixed elements follow.
 struct Arc {
   Run& run;
   const EquilibriumPath& path;
@@ -30,12 +34,14 @@ struct Arc {
   Vector last = {};  ///< displacement increment of the step before; empty at first
   double length = 0, longest = 0;
 
+  double along(const Vector& a, const Vector& b) const { return a.head(moving(run)).dot(b.head(moving(run))); }
+
   /// The length that leads to the bounds of the load and of the displacement, as far as the tangent foresees them.
   double reach(double lambda, double per_length, const Vector& t) const {
     const ArcLength& bounds = run.model.settings.arc_length;
     const double load = (bounds.load - (per_length > 0 ? lambda : -lambda)) / std::abs(per_length);
     double length_to = load > 0 ? 1.0001 * load : std::numeric_limits<double>::infinity();
-    for (Eigen::Index k = 0; k < t.size() && std::isfinite(bounds.displacement); k += 3) {
+    for (Eigen::Index k = 0; k < moving(run) && std::isfinite(bounds.displacement); k += 3) {
       const Vec3 u = run.now.u.segment<3>(k), d = per_length * t.segment<3>(k);
       const double a = d.squaredNorm(), b = u.dot(d), c = u.squaredNorm() - bounds.displacement * bounds.displacement;
       if (a > 0 && c < 0) length_to = std::min(length_to, 1.0001 * (std::sqrt(b * b - a * c) - b) / a);
@@ -51,7 +57,7 @@ struct Arc {
       if (to > 1.001 * bound && from < bound) share = std::min(share, std::max(0.05, (bound - from) / (to - from)));
     };
     look(std::abs(run.now.load_factor), std::abs(lambda), bounds.load);
-    look(largest_displacement(run.now.u), largest_displacement(u), bounds.displacement);
+    look(largest_displacement(run, run.now.u), largest_displacement(run, u), bounds.displacement);
     return share;
   }
 
@@ -89,10 +95,10 @@ struct Arc {
   /// The change of the load factor that keeps |way + r + x t| = length, in the direction of the way; NaN if none does.
   double keep_length(const Vector& way, const Vector& t, const Vector& r) const {
     const Vector base = way + r;
-    const double a = dot(t, t), b = dot(t, base), c = dot(base, base) - length * length, square = b * b - a * c;
+    const double a = along(t, t), b = along(t, base), c = along(base, base) - length * length, square = b * b - a * c;
     if (!(square >= 0) || !(a > 0)) return std::nan("");
-    const double root = std::sqrt(square), one = (-b + root) / a, two = (-b - root) / a, along = dot(way, t);
-    return one * along >= two * along ? one : two;
+    const double root = std::sqrt(square), one = (-b + root) / a, two = (-b - root) / a, forwards = along(way, t);
+    return one * forwards >= two * forwards ? one : two;
   }
 
   /// Newton's criteria of increment and energy (see Newton), of the correction that the last matrix and its t foresee.
@@ -108,7 +114,7 @@ struct Arc {
     const Forces& forces = run.newton.forces();
     const double energy = std::max(
         {std::abs(forces.found.energy), std::abs(dot(forces.internal, way)), std::abs(dot(forces.external, way))});
-    const Eigen::Index body = 3 * static_cast<Eigen::Index>(run.equations.numbering().body_nodes());
+    const Eigen::Index body = moving(run);
     result.missing_way = missing.head(body).cwiseAbs().maxCoeff() / result.u.head(body).cwiseAbs().maxCoeff();
     result.missing_energy = std::sqrt(std::abs(dot(residual, missing)) / energy);
     return result.missing_way <= tolerance && result.missing_energy <= tolerance;
@@ -122,8 +128,8 @@ struct Arc {
     run.newton.prepare(result.u, path.loads(lambda));
     Vector t, r;
     if (!directions(result.u, {}, t, r)) return result.stop = Stop::singular, result;
-    const double size = std::sqrt(dot(t, t));
-    const double sign = last.size() > 0 && dot(last, t) < 0 ? -1 : 1;
+    const double size = std::sqrt(along(t, t));
+    const double sign = last.size() > 0 && along(last, t) < 0 ? -1 : 1;
     if (!(size > 0)) return result.stop = Stop::singular, result;
     if (length == 0) length = size / run.model.settings.load_steps, longest = 10 * length;
     length = std::min({length, longest, reach(lambda, sign / size, t)});
@@ -179,7 +185,29 @@ void check_loads(const Arc& arc, const Step& step) {
 bool enough(const Run& run, int taken) {
   const ArcLength& arc = run.model.settings.arc_length;
   return taken >= arc.steps || std::abs(run.now.load_factor) >= arc.load ||
-         largest_displacement(run.now.u) >= arc.displacement;
+         largest_displacement(run, run.now.u) >= arc.displacement;
+}
+
+/// Equilibrium at the start of a step, before its loads grow: springs act in full from then on, and an initial
+/// displacement is where the way to it begins. False if there is none: the outcome is explained then.
+bool settle(Run& run, const EquilibriumPath& path) {
+  const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
+  const bool first = run.now.step == 0;
+  const bool sprung =
+      !step.springs.empty() || (!first && !run.model.steps[static_cast<std::size_t>(run.now.step) - 1].springs.empty());
+  if (!sprung && (!first || run.now.u.isZero(0))) return true;
+  const Increment increment{
+      run.now.u, path.supports.fixed,  path.supports.at(1, path.time(1)), path.loads(0), {}, nullptr,
+      {},        &path.supports.slides};
+  const IncrementResult result = run.reach(increment);
+  if (result.stop != Stop::converged) return explain(run, result, 0), false;
+  const Vector before = run.now.u;
+  run.now.u = result.u;
+  run.newton.prepare(run.now.u, path.loads(0));
+  run.newton.rest();
+  run.set_reactions(run.newton.forces().residual(), path.supports);
+  run.account(before);
+  return true;
 }
 
 /// Takes the next step along the arc, shorter where it fails.
@@ -241,6 +269,7 @@ void run_arc_length(Run& run) {
     };
     check_supports(run, path, step);
     run.now.load_factor = 0;
+    if (!settle(run, path)) return;
     Arc arc{run, path,
             run.equations.has_followers() ? make_unsymmetric(model.settings.threads)
                                           : make_indefinite(model.settings.threads),

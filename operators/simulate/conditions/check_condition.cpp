@@ -105,18 +105,7 @@ void check_motion(const Record& condition, const fe::Settings& settings, const f
                   fmt::format("has no meaning with timeIntegration=\"{}\", where nothing has inertia; leave it out, "
                               "or choose a dynamic timeIntegration",
                               fe::name(settings.integrator))));
-  if (!settings.arc_length.on) return;
-  if (condition.tag() == "fixedValue")
-    if (const auto* value = std::get_if<Formula>(value_of(condition, "value")); value != nullptr && !zero(*value))
-      tell(fault_of(condition,
-                    "moves the unknown, but arcLength follows loads alone: take value=\"0\", or arcLength=\"false\""));
-  if (condition.tag() != "displacementConstraint") return;
-  const auto* moved = std::get_if<Formulas>(value_of(condition, "displacement"));
-  for (std::size_t i = 0; moved != nullptr && i < moved->size(); ++i)
-    if (!zero((*moved)[i]) && !leaves_out(condition, static_cast<int>(i % 3)))
-      return tell(fault_of(
-          condition,
-          "moves supports, but arcLength follows loads alone: let the supports stay, or take arcLength=\"false\""));
+  if (settings.arc_length.on && settings.integrator == fe::Integrator::static_) check_along_an_arc(condition, tell);
 }
 
 /// False where it is told.

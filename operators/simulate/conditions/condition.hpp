@@ -60,6 +60,15 @@ std::vector<ConditionFactory> conditions();
 /// of the body; it ties a node to itself; it gives a velocity to what has no inertia.
 void check_condition(const Record& condition, const Surroundings& around, const fe::Tell& tell = fe::raise);
 
+/// Tells, at the condition's place, what arc length does not do with it: what changes with time, supports that move,
+/// planes askew.
+void check_along_an_arc(const Record& condition, const fe::Tell& tell);
+/// Tells, at the tag's place, which of its numbers change with time, for arc length, which has none.
+void check_timeless(const Record& record, const fe::Tell& tell);
+
+/// The axis along which a vector lies, to 1e-12 of its length, or -1.
+int axis_of(const Vec3& normal);
+
 /// Tells, at the condition's place, where its numbers do not fit each other or the indices that the scene lists in
 /// place; what other tasks give is not looked at.
 void check_counts(const Record& condition, const fe::Tell& tell);

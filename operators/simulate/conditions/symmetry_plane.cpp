@@ -13,14 +13,6 @@ std::string normal_problem(const Value& value) {
   return n.size() == 3 && n[0] == 0 && n[1] == 0 && n[2] == 0 ? "0 0 0 has no direction" : "";
 }
 
-/// The axis along which a vector lies, to 1e-12 of its length, or -1.
-int axis_of(const Vec3& normal) {
-  for (int k = 0; k < 3; ++k)
-    if ((normal.normalized() - Vec3::Unit(k)).norm() < 1e-12 || (normal.normalized() + Vec3::Unit(k)).norm() < 1e-12)
-      return k;
-  return -1;
-}
-
 ConditionFactory sliding(const char* name, const std::string& doc) {
   ConditionFactory tag(name, "constraint", doc);
   add_common(tag, "the nodes; or faces or elements, whose nodes are meant");
@@ -42,6 +34,13 @@ ConditionFactory sliding(const char* name, const std::string& doc) {
 }
 
 }  // namespace
+
+int axis_of(const Vec3& normal) {
+  for (int k = 0; k < 3; ++k)
+    if ((normal.normalized() - Vec3::Unit(k)).norm() < 1e-12 || (normal.normalized() + Vec3::Unit(k)).norm() < 1e-12)
+      return k;
+  return -1;
+}
 
 ConditionFactory symmetry_plane() {
   return sliding("symmetryPlane", "Nodes that stay in planes with a normal: they slide freely along them.");
