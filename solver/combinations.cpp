@@ -177,8 +177,8 @@ void check_prony(const Model& model, const Region& region, const Tell& tell) {
   double sum = 0;
   for (std::size_t i = 0; i < prony.g.size(); ++i) {
     sum += prony.g[i];
-    if (!std::isfinite(prony.g[i]) || prony.g[i] <= 0)
-      tell(Error(fmt::format("region '{}': prony: g = {} is not > 0", region.name, prony.g[i])));
+    if (!std::isfinite(prony.g[i]) || prony.g[i] < 0)
+      tell(Error(fmt::format("region '{}': prony: g = {} is not >= 0", region.name, prony.g[i])));
     if (!std::isfinite(prony.tau[i]) || prony.tau[i] <= 0)
       tell(Error(fmt::format("region '{}': prony: tau = {} is not > 0", region.name, prony.tau[i])));
   }

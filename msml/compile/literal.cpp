@@ -95,7 +95,11 @@ Parsed parse_formula(const Slot& slot, const std::string& text, const std::strin
   if (code == std::errc::invalid_argument) {
     const FormulaFacts facts = examine(text);
     if (!facts.problem.empty()) return {{}, fmt::format("{} = {}: {}", label, quoted_value(text), facts.problem)};
-    if (facts.of_position || facts.of_time) return {Formula(text), {}};
+    if (facts.of_position || facts.of_time) {
+      const std::string never = never_allowed(text, slot.range);
+      if (never.empty()) return {Formula(text), {}};
+      return {{}, fmt::format("{} = {} {}", label, quoted_value(text), never)};
+    }
     value = facts.value;
     what = number_problem(slot, std::errc(), value);
   } else {

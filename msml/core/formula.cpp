@@ -5,9 +5,12 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <mutex>
 #include <numbers>
+#include <random>
 
 #include "msml/core/braces.hpp"
 
@@ -94,6 +97,60 @@ FormulaFacts examine(const std::string& expression) {
     return fault(words_for(expression, error));
   }
   return facts;
+}
+
+namespace {
+
+/// Numbers that an expression holds, those between any two of them, and the same with the other sign.
+std::vector<double> turning_points(const std::string& expression) {
+  std::vector<double> found{0, 1};
+  for (std::size_t i = 0; i < expression.size() && found.size() < 12; ++i) {
+    if (!std::isdigit(static_cast<unsigned char>(expression[i]))) continue;
+    double number = 0;
+    const char* start = expression.data() + i;
+    const auto [end, error] = std::from_chars(start, expression.data() + expression.size(), number);
+    if (error == std::errc() && std::isfinite(number)) found.push_back(number);
+    i += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - start, 1)) - 1;
+  }
+  const std::size_t count = found.size();
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < i; ++k) found.push_back(0.5 * (found[i] + found[k]));
+  for (std::size_t i = found.size(); i-- > 0;) found.push_back(-found[i]);
+  return found;
+}
+
+/// Uniform in [-1, 1), the same on every machine.
+double draw(std::mt19937& random) { return 2 * (random() / 4294967296.0) - 1; }
+
+}  // namespace
+
+std::string never_allowed(const std::string& expression, const Range& range) {
+  constexpr int fifty = 50, most = 4000;  // nearly every expression suits at the first places
+  mu::Parser parser;
+  Place place;
+  define(parser, place);
+  std::mt19937 random(1);
+  const std::vector<double> turns = turning_points(expression);
+  double first = 0;
+  Place there;
+  try {
+    parser.SetExpr(expression);
+    for (int n = 0; n < most; ++n) {
+      const double scale = std::pow(10.0, n % 13 - 6);
+      for (double* x : {&place.X, &place.Y, &place.Z, &place.t})
+        *x = n % 2 == 0 || n < fifty / 2 ? scale * draw(random)
+                                         : turns[random() % turns.size()] + 1e-3 * scale * draw(random);
+      place.t = std::abs(place.t);
+      const double value = parser.Eval();
+      if (range.contains(value)) return "";
+      if (n == 0) first = value, there = place;
+    }
+  } catch (const mu::Parser::exception_type&) {
+    return "";
+  }
+  return fmt::format("is {} at X = {:.3g}, Y = {:.3g}, Z = {:.3g}, t = {:.3g}, and {} at no place and time at all",
+                     std::isnan(first) ? "nan" : fmt::format("{:.4g}", first), there.X, there.Y, there.Z, there.t,
+                     range.bounded() ? range.str() : "finite");
 }
 
 std::vector<std::string> expression_parts(const std::string& text) {

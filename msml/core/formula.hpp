@@ -17,6 +17,11 @@ struct FormulaFacts {
 };
 FormulaFacts examine(const std::string& expression);
 
+/// Why an expression is of no use wherever and whenever it is evaluated: it is not finite, or not in the range, at any
+/// of several thousand places X, Y, Z and times t >= 0, of all scales and signs and between the numbers that it holds
+/// itself. "" where one of them suits, and for a faulty expression. The places are always the same.
+std::string never_allowed(const std::string& expression, const Range& range);
+
 /// Parts of a list outside parentheses: at commas if there are any, else at blanks. One pair of braces is dropped.
 std::vector<std::string> expression_parts(const std::string& text);
 

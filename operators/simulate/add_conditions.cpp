@@ -103,7 +103,7 @@ void warn_unknown_step(const Placed& placed, const std::vector<fe::Step>& steps,
 Vec3 value_of(const fe::Prescribed& prescribed, std::size_t i, const Mesh& mesh, double t) {
   const double factor = prescribed.factor ? prescribed.factor(t) : 1;
   if (prescribed.function) return factor * prescribed.function(mesh.points.row(prescribed.nodes[i]).transpose(), t);
-  return factor * prescribed.values.size() == 1 ? prescribed.values.front() : prescribed.values[i];
+  return factor * (prescribed.values.size() == 1 ? prescribed.values.front() : prescribed.values[i]);
 }
 
 /// Warns of nodes that two conditions of a step move to different places.

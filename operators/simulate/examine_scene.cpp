@@ -218,7 +218,9 @@ std::vector<Finding> examine_filled(const Record& args, bool every_tag) {
     examine_forward_euler(args, outline, fault);
     check_arc_loads(args, around, fault);
   }
-  if (outline.settings) find_idle(args, around, [&](const Error& error) { found.push_back({error, Kind::idle}); });
+  const Report idle = [&](const Error& error) { found.push_back({error, Kind::idle}); };
+  if (outline.settings) find_idle(args, around, idle);
+  find_idle_tables(args, idle);
   return found;
 }
 

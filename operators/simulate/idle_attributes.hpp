@@ -11,6 +11,9 @@ namespace msml::simulation {
 /// settings.
 void find_idle(const Record& args, const Surroundings& around, const std::function<void(const Error&)>& tell);
 
+/// Tells of each table whose times all lie before or after those when its tag acts.
+void find_idle_tables(const Record& args, const std::function<void(const Error&)>& tell);
+
 /// True for names in capitals such as SGAUSS_SEIDEL and ILU2, as other programs spell theirs.
 bool of_other_program(const std::string& name);
 

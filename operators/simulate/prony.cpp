@@ -26,7 +26,8 @@ Factory<fe::Prony> prony() {
   tag.source("Fung 1993, Biomechanics; update by Taylor, Pister and Goudreau 1970, doi 10.1002/nme.1620020106");
   const auto g = tag.parameter<Formulas>(
       "g",
-      {.range = open(0, 1), .doc = "share of the instantaneous stress that each term loses; their sum is below 1"});
+      {.range = half_open(0, 1),
+       .doc = "share of the instantaneous stress that each term loses, 0 where it does not act; their sum is below 1"});
   const auto tau =
       tag.parameter<Formulas>("tau", {.unit = "time", .range = positive(), .doc = "relaxation time of each term"});
   const auto given = tag.parameter<std::string>(

@@ -54,7 +54,11 @@ NodeSelection listed_nodes(const Record& record, const IndexSet& set, const Body
 }  // namespace
 
 void check_indices(const Record& record, const IndexSet& set, const Mesh& mesh) {
-  if (set.mesh && !same_mesh(*set.mesh, mesh))
+  // Nodes are those of a mesh with the same points, such as particles at those of a mesh of elements.
+  const bool same =
+      !set.mesh || same_mesh(*set.mesh, mesh) ||
+      (set.kind == Indexed::nodes && set.mesh->points.rows() == mesh.points.rows() && set.mesh->points == mesh.points);
+  if (!same)
     refuse(record, fmt::format("indices counts {} of another mesh ({}) than the object's ({}); take them from the mesh "
                                "that the object uses",
                                name(set.kind), set.mesh->summary(), mesh.summary()));

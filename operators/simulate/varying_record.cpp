@@ -117,6 +117,9 @@ void check_direction(const Record& record, const Slot& slot, const std::string& 
   for (const std::string& part : parts)
     if (!problem(part).empty())
       return tell(fault_of(record, fmt::format("{} = '{}': '{}': {}", slot.name, text, part, problem(part))));
+  for (const std::string& part : parts)
+    if (const std::string never = never_allowed(part, {}); !never.empty())
+      tell(fault_of(record, fmt::format("{}: '{}' {}", slot.name, part, never)));
   if (parts.size() != 3)
     tell(fault_of(record, fmt::format("{} = '{}' has {}; a direction has 3, or is the name of a cell field of the mesh",
                                       slot.name, text, counted(static_cast<long long>(parts.size()), "number"))));

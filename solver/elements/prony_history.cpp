@@ -183,7 +183,8 @@ void PronyHistory::store(std::size_t point, const Gradients& gradient, const Res
     const double elastic = spring(elastic_[point]), energy = scale * response.energy[lane];
     const double ratio = elastic > 0 && energy > 0 ? energy / elastic : 1;
     for (std::size_t i = 0; i < parts_.size(); ++i)
-      energy_[point][lane] += ratio / series.terms()[i].g[lane] * spring(parts_[i][point]);
+      if (series.terms()[i].g[lane] > 0)
+        energy_[point][lane] += ratio / series.terms()[i].g[lane] * spring(parts_[i][point]);
   }
 }
 

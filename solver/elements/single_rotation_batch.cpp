@@ -229,7 +229,8 @@ void end_step(const Lanes (&u)[10][3], RotationBatch& batch) {
     for (std::size_t a = 0; a < 10; ++a)
       for (int i = 0; i < 3; ++i)
         series.advance(k, series.scale() * state.d[a][i] - history.elastic[a][i], history.parts[k][a][i]);
-    history.stored += apply_stiffness(batch, history.parts[k], force) / (series.terms()[k].g * series.scale());
+    const Lanes g = series.terms()[k].g, stored = apply_stiffness(batch, history.parts[k], force);
+    history.stored += g > 0.0 ? stored / (g * series.scale()) : Lanes{};  // a term of 0 stores nothing
   }
   for (std::size_t a = 0; a < 10; ++a)
     for (int i = 0; i < 3; ++i) history.elastic[a][i] = series.scale() * state.d[a][i];

@@ -50,6 +50,28 @@ TEST(Formula, ValueOutsideItsRangeIsAnError) {
   EXPECT_THROW(of("X", positive())({-1, 0, 0}, 0), Error);
 }
 
+TEST(Formula, IsRefusedWhereItIsWrongEverywhere) {
+  EXPECT_TRUE(never_allowed("1/(X-X)", {}).starts_with("is inf at X = "));
+  EXPECT_TRUE(never_allowed("0*log(-1-t*t) + Y", {}).starts_with("is nan at X = "));
+  EXPECT_NE(never_allowed("sqrt(-1 - X*X)", {}), "");
+  EXPECT_NE(never_allowed("sqrt(-1 - t)", {}), "");  // time begins at 0
+  EXPECT_NE(never_allowed("-1 - X*X", positive()), "");
+  EXPECT_NE(never_allowed("2 + abs(Z)", half_open(0, 1)), "");
+  EXPECT_TRUE(never_allowed("-1 - X*X", positive()).ends_with(", and > 0 at no place and time at all"));
+}
+
+// What suits at some place or time is left to the run, however narrow that is.
+TEST(Formula, IsLeftToTheRunWhereItMaySuit) {
+  EXPECT_EQ(never_allowed("-1 - X*X", {}), "");
+  EXPECT_EQ(never_allowed("1/X", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(X - 10)*sqrt(11 - X)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(Y - 1000.25)*sqrt(1000.75 - Y)*sqrt(-Z - 40)*sqrt(41 + Z)", {}), "");
+  EXPECT_EQ(never_allowed("t > 3.2 && t < 3.3 ? 1e-3 : -1", positive()), "");
+  EXPECT_EQ(never_allowed("1e-12 - X^2 - Y^2 - Z^2", positive()), "");
+  EXPECT_EQ(never_allowed("log(X - 123456)", {}), "");
+  EXPECT_EQ(never_allowed("X +", {}), "");  // its fault is told elsewhere
+}
+
 TEST(Formula, ThreadsDoNotDisturbEachOther) {
   const Function square = of("X*X + t");
   std::vector<std::thread> threads;

@@ -306,10 +306,6 @@ TEST(SurfacePressureOnMesh, MatchesTheTrianglesOfASeparateSurface) {
   ASSERT_EQ(built.step().face_loads.at(0).faces.size(), 1U);
   EXPECT_THAT(simulation::face_nodes(*mesh, built.step().face_loads[0].faces[0]),
               testing::UnorderedElementsAre(4, 6, 7));
-  load["pulse"] = std::string("sin");
-  EXPECT_EQ(build(language, topped(language, mesh, load, "surfacePressureOnMesh")).error,
-            "scene.xml:7: surfacePressureOnMesh: pulse is not available yet; a table or an expression in t gives the "
-            "pressure over time");
 }
 
 Scene two_steps(const Language& language) {

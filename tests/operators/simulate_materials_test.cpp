@@ -321,6 +321,9 @@ TEST(Prony, MayDifferFromPlaceToPlace) {
   EXPECT_TRUE(there.long_term);
   ASSERT_EQ(region.prony.tau.size(), 2u);
   EXPECT_EQ(region.prony.tau[0], 1000);  // the shortest
+  const Attributes here_and_there{{"g", Formulas{Formula("max(0, Z - 1)/9")}}, {"tau", Formulas{1.0}}};
+  const auto partly = build_model(scene(here_and_there).record(language), listener, 1);
+  EXPECT_EQ(partly.model.regions[0].prony_at(0, {0, 0, 0.5}).g[0], 0);  // no relaxation there
   EXPECT_THAT(message(language, scene({{"g", Formulas{Formula("Z"), 0.2}}, {"tau", Formulas{1.0, 1.0}}})),
               HasSubstr("g = "));
   EXPECT_THAT(message(language, scene({{"g", Formulas{Formula("Z/2"), 0.2}}, {"tau", Formulas{1.0, 1.0}}})),

@@ -238,6 +238,29 @@ TEST(PronyElements, MayDifferFromPlaceToPlace) {
     }
 }
 
+// A term of 0 takes no part in forces or in the energy that is stored, beside one that does.
+TEST(PronyElements, ATermOfZeroDoesNotAct) {
+  std::vector<Way> all(std::begin(ways), std::end(ways));
+  for (const CellKind kind : every_kind) all.push_back({name(kind), kind, Formulation::standard});
+  for (const Way& way : all) {
+    Model model = viscous_model(way, unit_mesh(1, way.kind), {.youngs_modulus = 1000}), less = model;
+    model.regions[0].prony = {.g = {0.3, 0}, .tau = {0.1, 1}, .long_term = true};
+    less.regions[0].prony = {.g = {0.3}, .tau = {0.1}, .long_term = true};
+    const auto elements = make_elements(model), fewer = make_elements(less);
+    const Vector u = deformed(*elements, 0.05);
+    for (const double dt : {0.0, 0.04, 0.2}) {
+      elements->begin_step(dt), fewer->begin_step(dt);
+      const Vector wanted = force_at(*fewer, u);
+      EXPECT_LT((force_at(*elements, u) - wanted).norm(), 1e-14 * wanted.norm()) << way.name;
+      elements->end_step(u), fewer->end_step(u);
+    }
+    const auto stored = elements->history_energy(), expected = fewer->history_energy();
+    ASSERT_TRUE(stored && expected) << way.name;
+    for (std::size_t q = 0; q < stored->size(); ++q)
+      EXPECT_NEAR((*stored)[q], (*expected)[q], 1e-14 * std::abs((*expected)[q])) << way.name;
+  }
+}
+
 // Held where it begins, a body has the stress of the law first, with its pressure, which then relaxes as G(t).
 TEST(PronyElements, RelaxFromAnInitialDisplacement) {
   for (const Way& way : ways)

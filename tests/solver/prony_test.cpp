@@ -197,6 +197,8 @@ TEST(Prony, IsRefusedOutsideItsRange) {
   };
   EXPECT_EQ(refusal(two_terms), "");
   EXPECT_THAT(refusal({.g = {0.3, 0.8}, .tau = {1, 2}}), HasSubstr("the sum of g = 1.1 is not < 1"));
+  EXPECT_EQ(refusal({.g = {0.3, 0}, .tau = {1, 2}}), "");
+  EXPECT_THAT(refusal({.g = {-0.3}, .tau = {1}}), HasSubstr("g = -0.3 is not >= 0"));
   EXPECT_THAT(refusal({.g = {0.3}, .tau = {0}}), HasSubstr("tau = 0 is not > 0"));
   EXPECT_THAT(refusal({.g = {0.3}, .tau = {1, 2}}), HasSubstr("one of each per term"));
 }

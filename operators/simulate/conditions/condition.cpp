@@ -70,6 +70,13 @@ std::string table_problem(const Value& value) {
   return {};
 }
 
+std::string signless_table_problem(const Value& value) {
+  const auto& list = std::get<std::vector<double>>(value);
+  for (std::size_t i = 1; i < list.size(); i += 2)
+    if (list[i] < 0) return fmt::format("the factor {:g} is not >= 0", list[i]);
+  return table_problem(value);
+}
+
 bool constant(const Formulas& formulas) {
   return std::all_of(formulas.begin(), formulas.end(), [](const Formula& each) { return each.constant(); });
 }
@@ -90,12 +97,12 @@ const std::string& name_of(const Record& record, Key<Formulas> key) {
 
 }  // namespace
 
-Key<std::vector<double>> add_table(Description& description, const std::string& of) {
+Key<std::vector<double>> add_table(Description& description, const std::string& of, bool signless) {
   return description.parameter<std::vector<double>>(
       "table",
       {.optional = true,
        .multiple_of = 2,
-       .check = table_problem,
+       .check = signless ? signless_table_problem : table_problem,
        .doc = "a factor in time on " + of +
               ": \"t0 v0 t1 v1 …\", linear between the times, constant before the first and after the last; nothing "
               "ramps then"});

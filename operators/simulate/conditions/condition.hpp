@@ -95,8 +95,9 @@ struct CommonKeys {
 /// Adds `indices` (meaning nodes where the scene lists plain numbers, unless `indexes` says otherwise) and `forStep`.
 CommonKeys add_common(Description& description, const std::string& doc, Indexed indexes = Indexed::nodes);
 
-/// Adds `table`, a factor in time on the numbers of the tag, or on what `of` says.
-Key<std::vector<double>> add_table(Description& description, const std::string& of = "the numbers of this tag");
+/// Adds `table`, a factor in time on the numbers of the tag, or on what `of` says; of either sign, or not below 0.
+Key<std::vector<double>> add_table(Description& description, const std::string& of = "the numbers of this tag",
+                                   bool signless = false);
 /// The table as a function: linear between its times, constant outside; empty where the tag has none.
 fe::TimeFunction read_table(const Record& record, Key<std::vector<double>> table);
 

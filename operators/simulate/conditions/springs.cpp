@@ -12,7 +12,8 @@ struct SpringKeys {
 };
 
 Key<std::vector<double>> add_spring_table(Description& tag) {
-  return add_table(tag, "the force of the spring and its damper (stiffness and damping); each factor is >= 0");
+  // Springs that push the harder the longer they are hold nothing.
+  return add_table(tag, "the force of the spring and its damper (stiffness and damping); each factor is >= 0", true);
 }
 
 SpringKeys add_spring(Description& tag) {
@@ -46,13 +47,6 @@ Vec3 point_of(const std::vector<double>& numbers, std::size_t i = 0) {
 
 double value_at(const Record& record, Key<Formula> key, const Vec3& X) { return function(record, key)(X, 0); }
 
-/// The table of a tag, without negative factors: springs that push the harder the longer they are hold nothing.
-fe::TimeFunction factor_of(const Record& record, Key<std::vector<double>> table) {
-  for (std::size_t i = 1; record.has(table) && i < record[table].size(); i += 2)
-    if (record[table][i] < 0) refuse(record, fmt::format("table: the factor {:g} is not >= 0", record[table][i]));
-  return read_table(record, table);
-}
-
 /// The number of a spring at X as time goes on; empty where it stays.
 fe::TimeFunction in_time(const Function& number, const Vec3& X, const fe::TimeFunction& factor) {
   if (!number.of_time() && !factor) return {};
@@ -61,7 +55,7 @@ fe::TimeFunction in_time(const Function& number, const Vec3& X, const fe::TimeFu
 
 /// What changes with time. `keys.rest` may be absent.
 void set_times(const Record& record, const SpringKeys& keys, const Vec3& X, fe::Spring& spring) {
-  const fe::TimeFunction factor = factor_of(record, keys.table);
+  const fe::TimeFunction factor = read_table(record, keys.table);
   spring.stiffness_at = in_time(function(record, keys.stiffness), X, factor);
   if (spring.damping > 0 || function(record, keys.damping).of_time())
     spring.damping_at = in_time(function(record, keys.damping), X, factor);
@@ -182,7 +176,7 @@ ConditionFactory spring_mesh_to_fixed() {
                   .stiffness = k,
                   .damping = value_at(record, damping, X) * k};
         const Function number = function(record, stiffness), ratio = function(record, damping);
-        spring.stiffness_at = in_time(number, X, factor_of(record, table));
+        spring.stiffness_at = in_time(number, X, read_table(record, table));
         if (spring.stiffness_at || ratio.of_time())
           spring.damping_at = {
               [=, k = spring.stiffness_at](double t) { return ratio(X, t) * (k ? k(t) : number(X, t)); },
