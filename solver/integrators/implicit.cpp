@@ -101,6 +101,16 @@ IncrementResult reach(Stage& stage, Trial& trial) {
   return trial.result;
 }
 
+/// Size of the forces that moving supports put into a body, as far as its tangent at the end of the step tells: from
+/// rest no others may act.
+double support_force(const Run& run, const Trial& trial) {
+  Vector moved = trial.result.u - trial.increment.start, force;
+  for (std::size_t k = 0; k < trial.increment.fixed.size(); ++k)
+    if (!trial.increment.fixed[k]) moved[static_cast<Eigen::Index>(k)] = 0;
+  multiply(run.newton.tangent(), moved, force);
+  return force.norm();
+}
+
 /// The step from the present state to a time; nothing is kept.
 Trial try_step(Stage& stage, double time, const Forces& start_forces, bool damped) {
   Run& run = stage.run;
@@ -133,7 +143,8 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
     trial.result.stop = run.newton.state_verdict();
     // One linear solve leaves a residual; one far beyond all forces is no answer to go on from.
     const double left = free_norm(run.newton.residual(trial.increment), stage.supports.fixed);
-    if (trial.result.stop == Stop::converged && left > 1e6 * trial.result.scale) trial.result.stop = Stop::diverged;
+    const double all = std::max(trial.result.scale, support_force(run, trial));
+    if (trial.result.stop == Stop::converged && left > 1e6 * all) trial.result.stop = Stop::diverged;
   }
   return trial;
 }

@@ -150,6 +150,16 @@ TEST(Particles, HaveTheMassOfTheirRegion) {
   EXPECT_EQ(model.point_masses[1].mass, 3);
 }
 
+TEST(Particles, AreNamedByTheNodesOfTheMeshTheyStandAt) {
+  const Language language;
+  Scene scene = cube(language);
+  const auto mesh = std::make_shared<const Mesh>(scene.mesh ? *scene.mesh : Mesh());
+  scene.mesh_tag = language.tag("particles", "mesh", {{"mesh", MeshPtr(mesh)}});
+  scene.regions = {language.tag("region", "region", {{"indices", index_set(mesh, Indexed::nodes, {0, 5})}},
+                                {language.tag("pointMass", "material", {{"mass", 3.0}})})};
+  EXPECT_EQ(build(language, scene).point_masses.size(), static_cast<std::size_t>(mesh->point_count()));  // extended
+}
+
 TEST(Particles, HaveNoLawAndElementsNoPointMass) {
   const Language language;
   Scene scene = particles(language);

@@ -342,5 +342,21 @@ TEST(Dynamics, LoadsOfTheNextStepReplaceThoseBefore) {
   EXPECT_NEAR(outcome.state.time, 800, 1e-9);
 }
 
+// Supports alone move it, so that nothing pulls when the first step begins; one linear solve then leaves a residual.
+TEST(Newmark, OneSolvePerStepStartsFromRestByItsSupports) {
+  Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1000});
+  const auto at = [&](double x) {
+    return points_where(*model.mesh, [=](const Vec3& X) { return std::abs(X[0] - x) < 1e-9; });
+  };
+  model.steps[0].prescribed = {fix(at(0)), fix(at(1), true, false, false)};
+  model.steps[0].prescribed[1].function = [](const Vec3&, double t) { return Vec3(0.01 * t, 0, 0); };
+  model.steps[0].dt = 0.001;
+  model.steps[0].count = 3;
+  model.settings.integrator = Integrator::newmark;
+  model.settings.newton_iterations = 1;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+}
+
 }  // namespace
 }  // namespace msml::fe
