@@ -112,6 +112,7 @@ Surroundings surroundings_of(const Outline& outline) {
   const fe::Model& model = outline.model;
   Surroundings around{.kind = outline.kind,
                       .mixed = model.formulation == fe::Formulation::mixed,
+                      .one_region = outline.parts.size() == 1,
                       .settings = outline.settings ? &model.settings : nullptr};
   bool every = !outline.parts.empty(), fibres = false;
   for (const Part& part : outline.parts) {
@@ -145,8 +146,8 @@ void examine_combinations(const Record& args, const Outline& outline, const Repo
 
 /// Conditions against the elements, the laws and the solver, as far as these are known.
 void examine_conditions(const Record& args, const Surroundings& around, const Report& fault) {
-  const auto velocities = std::ranges::count_if(
-      all_of(args, "constraint"), [](const Record* record) { return record->tag() == "initialVelocity"; });
+  std::map<std::string, int> counts;
+  for (const Record* condition : all_of(args, "constraint")) ++counts[condition->tag()];
   const std::vector<std::string> steps = step_names(args);
   for (const Record* step : all_of(args, "step"))
     if (around.kind) check_gravity(*step, around.scalar.value_or(false), *around.kind, fault);
@@ -154,7 +155,7 @@ void examine_conditions(const Record& args, const Surroundings& around, const Re
     const Record& condition = *placed.record;
     check_condition(condition, around, fault);
     check_counts(condition, fault);
-    attempt(condition, fault, [&] { check_divergence(condition, around, velocities == 1); });
+    attempt(condition, fault, [&] { check_volumes(condition, around, counts[condition.tag()] == 1); });
     attempt(condition, fault, [&] { check_steps(placed, steps); });
   }
 }
@@ -192,9 +193,24 @@ void examine_outputs(const Record& args, const Surroundings& around, const Repor
   }
 }
 
-enum class Kind : std::uint8_t { fault, fault_of_law, idle };
+/// Methods that damp no motion let the pressures swing that keep volumes at the ends of steps.
+void examine_pressures(const Record& args, const Surroundings& around, const Report& warn) {
+  const Record* solver = first_of(args, "solver");
+  if (!around.incompressible || around.settings == nullptr || solver == nullptr) return;
+  const fe::Settings& s = *around.settings;
+  const bool newmark = s.integrator == fe::Integrator::newmark && s.newmark_gamma <= 0.5;
+  const bool alpha = s.integrator == fe::Integrator::generalized_alpha && s.spectral_radius == 1;
+  if (newmark || alpha)
+    warn(fault_of(*solver,
+                  fmt::format("{} lets the pressure of incompressible=\"true\" swing from step to step, the more the "
+                              "longer it runs, since it damps nothing. Take {} or dynamicImplicitEuler, which damp it",
+                              newmark ? "timeIntegration=\"Newmark\"" : "spectralRadius=\"1\"",
+                              newmark ? "generalizedAlpha" : "a smaller one")));
+}
 
-/// One thing that is wrong, or idle.
+enum class Kind : std::uint8_t { fault, fault_of_law, warning };
+
+/// One thing that is wrong, or that may well be.
 struct Finding {
   Error error;
   Kind kind;
@@ -218,9 +234,10 @@ std::vector<Finding> examine_filled(const Record& args, bool every_tag) {
     examine_forward_euler(args, outline, fault);
     check_arc_loads(args, around, fault);
   }
-  const Report idle = [&](const Error& error) { found.push_back({error, Kind::idle}); };
-  if (outline.settings) find_idle(args, around, idle);
-  find_idle_tables(args, idle);
+  const Report warn = [&](const Error& error) { found.push_back({error, Kind::warning}); };
+  if (outline.settings) find_idle(args, around, warn);
+  find_idle_tables(args, warn);
+  examine_pressures(args, around, warn);
   return found;
 }
 
@@ -261,7 +278,7 @@ void examine_scene(const Examination& scene) {
   do {
     found.push_back(examine_filled(fillings.at(static_cast<int>(found.size())), scene.every_tag));
   } while (!found.front().empty() && static_cast<int>(found.size()) < fillings.count());
-  for (const Finding& one : certain(found)) (one.kind == Kind::idle ? scene.warn : scene.fault)(one.error);
+  for (const Finding& one : certain(found)) (one.kind == Kind::warning ? scene.warn : scene.fault)(one.error);
 }
 
 }  // namespace msml::simulation

@@ -14,6 +14,7 @@ struct Surroundings {
   std::optional<bool> fibres = {};    ///< a law has fibres
   bool mixed = false;                 ///< the pressure is an unknown
   bool incompressible = false;        ///< a law is
+  bool one_region = false;            ///< the body has no other
   const fe::Settings* settings = nullptr;
 };
 

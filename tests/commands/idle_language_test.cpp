@@ -44,6 +44,23 @@ TEST(IdleLanguage, ExplicitMethodsSolveNoEquations) {
     EXPECT_THAT(said, HasSubstr(idle(attribute)));
 }
 
+TEST(IdleLanguage, MethodsThatDampNothingLetThePressuresOfIncompressibleBodiesSwing) {
+  const auto with = [](const std::string& attributes, const std::string& law = R"(incompressible="true")") {
+    return warnings(Parts{.mesh = R"(<quadraticTet mesh="${b}" formulation="mixed"/>)",
+                          .region = "<mooneyRivlinMaterial c1=\"1\" " + law + "/>",
+                          .solver = "<solver " + attributes + "/>"});
+  };
+  EXPECT_THAT(with(R"(timeIntegration="Newmark")"),
+              HasSubstr("s.xml:10: solver: timeIntegration=\"Newmark\" lets the pressure of incompressible=\"true\" "
+                        "swing"));
+  EXPECT_THAT(with(R"(timeIntegration="Newmark")"), HasSubstr("generalizedAlpha or dynamicImplicitEuler"));
+  EXPECT_THAT(with(R"(timeIntegration="generalizedAlpha" spectralRadius="1")"), HasSubstr("spectralRadius=\"1\" lets"));
+  for (const char* damping : {R"(timeIntegration="generalizedAlpha")", R"(timeIntegration="dynamicImplicitEuler")",
+                              R"(timeIntegration="Newmark" gamma="0.6" beta="0.3025")", R"(timeIntegration="static")"})
+    EXPECT_EQ(with(damping), "");
+  EXPECT_EQ(with(R"(timeIntegration="Newmark")", R"(bulkModulus="100")"), "");
+}
+
 TEST(IdleLanguage, FieldsOfKnownValueAreNamed) {
   const std::string said = warnings(Parts{.output = R"(<result id="r" fields="velocity fiberStretch"/>)"});
   EXPECT_THAT(said, HasSubstr("s.xml:8: result: velocity is 0 with timeIntegration=\"static\""));

@@ -23,6 +23,10 @@ ConditionFactory initial(const char* name, const char* attribute, const char* un
                   .check = time_problem,
                   .doc = "3 numbers or expressions in X, Y and Z for all, or 3 numbers for each node"});
   tag.note("It acts once, before the first step; a later tag overwrites an earlier one at the nodes that both name.");
+  tag.note(
+      "Dynamics of incompressible regions refuse one that changes volumes; what the mesh makes of one that keeps them "
+      "is "
+      "taken away.");
   if (!velocity) tag.note("A static simulation takes it as the start of Newton's method in the first step.");
   tag.build([=](const Record& record) -> ConditionBuilder {
     return [=, &record](const Body& body, Reporter& reporter) -> Condition {
