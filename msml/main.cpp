@@ -3,12 +3,16 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <system_error>
 
 #include "msml/commands/commands.hpp"
 #include "msml/commands/help.hpp"
 #include "msml/commands/schema.hpp"
 #include "msml/commands/study.hpp"
 #include "msml/compile/grammar.hpp"
+#include "msml/core/address_space.hpp"
 #include "operators/registry.hpp"
 
 namespace {
@@ -18,7 +22,8 @@ using msml::Registry;
 using msml::SceneArguments;
 
 constexpr const char* footer =
-    R"(Exit codes: 0 done, 1 comparison above tolerance, 2 bad input, 3 not converged, 4 internal fault, 130 interrupted.
+    R"(Exit codes: 0 done, 1 comparison above tolerance, 2 bad input, 3 not converged or out of memory, 4 internal fault,
+130 interrupted.
 Examples:
   msml exec scene.msml.xml -o results     run a scene, write its results to the folder results
   msml check scene.msml.xml               find every fault of a scene without running it
@@ -167,9 +172,8 @@ struct CommandLine {
   }
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+/// The exit code; prints what was thrown.
+int run_program(int argc, char** argv) {
   try {
     CommandLine line;
     if (argc < 2) {
@@ -187,8 +191,29 @@ int main(int argc, char** argv) {
   } catch (const msml::Error& error) {
     std::fprintf(stderr, "%s\n", error.str().c_str());
     return static_cast<int>(error.failure());
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "not enough memory\n");
+    return static_cast<int>(msml::Failure::not_converged);
+  } catch (const std::system_error& error) {
+    const bool crowded = error.code() == std::errc::resource_unavailable_try_again;
+    const std::string told = crowded ? "not enough memory for another thread; try --threads 1 --jobs 1"
+                                     : std::string("unexpected: ") + error.what();
+    std::fprintf(stderr, "%s\n", told.c_str());
+    return static_cast<int>(crowded ? msml::Failure::not_converged : msml::Failure::internal);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "unexpected: %s\n", error.what());
     return static_cast<int>(msml::Failure::internal);
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int code = run_program(argc, argv);
+  // The end of a program waits for OpenBLAS's threads, which may still wait for memory.
+  if (msml::address_space_is_limited()) {
+    std::fflush(nullptr);
+    std::_Exit(code);
+  }
+  return code;
 }

@@ -22,7 +22,7 @@ struct SceneArguments {
   bool dry_run = false, verbose = false, quiet = false, strict = false;
 };
 
-/// Runs a scene. 0 done, 2 bad input, 3 not converged, 4 internal.
+/// Runs a scene. 0 done, 2 bad input, 3 not converged or out of memory, 4 internal.
 int exec_command(const Registry& registry, const SceneArguments& arguments);
 /// Compiles a scene, and each setting of its studies, and says what it found. 0 or 2.
 int check_command(const Registry& registry, const SceneArguments& arguments);

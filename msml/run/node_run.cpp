@@ -8,6 +8,8 @@
 
 #include <cmath>
 #include <mutex>
+#include <new>
+#include <system_error>
 
 #include "msml/compile/scope.hpp"
 #include "msml/core/atomic_file.hpp"
@@ -192,7 +194,12 @@ std::vector<Value> run_node(const Graph& graph, int index, const Results& result
     throw Error(named(error.what()), error.where().file.empty() ? node.where : error.where(), error.failure());
   } catch (const std::bad_alloc&) {
     report.facts["ended"] = R"("out of memory")";
-    throw Error(named("not enough memory"), node.where, Failure::internal);
+    throw Error(named("not enough memory"), node.where, Failure::not_converged);
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::resource_unavailable_try_again)
+      throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
+    report.facts["ended"] = R"("out of memory")";
+    throw Error(named("not enough memory for another thread; try --threads 1"), node.where, Failure::not_converged);
   } catch (const std::exception& error) {
     throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
   } catch (...) {

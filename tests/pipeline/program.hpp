@@ -42,11 +42,12 @@ class Folder {
   fs::path path_;
 };
 
-/// `msml ARGUMENTS` with a time limit of `seconds`; a program that hangs ends with code 124.
-inline Finished run_msml(const std::string& arguments, int seconds = 240) {
+/// `msml ARGUMENTS` with a time limit of `seconds`; a program that hangs ends with code 124. `before`: what the shell
+/// does first.
+inline Finished run_msml(const std::string& arguments, int seconds = 240, const std::string& before = "") {
   const Folder folder;
-  const std::string command = "timeout " + std::to_string(seconds) + " '" MSML_PROGRAM "' " + arguments + " >'" +
-                              (folder / "out").string() + "' 2>'" + (folder / "err").string() + "'";
+  const std::string command = before + "timeout " + std::to_string(seconds) + " '" MSML_PROGRAM "' " + arguments +
+                              " >'" + (folder / "out").string() + "' 2>'" + (folder / "err").string() + "'";
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder / "out"), content(folder / "err")};
 }

@@ -11,6 +11,7 @@
 #include <new>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <system_error>
 
 #include "msml/run/report.hpp"
 #include "tests/compile/objects.hpp"
@@ -145,17 +146,21 @@ TEST(Run, FailureKeepsItsKind) {
   EXPECT_EQ(static_cast<int>(out.result.errors[0].failure()), 3);
 }
 
-TEST(Run, StandardExceptionsBecomeInternalErrors) {
+TEST(Run, StandardExceptionsBecomeInternalErrorsButForWantOfMemory) {
   const Folder folder;
-  const auto thrown = [&](auto exception) {
+  const auto thrown = [&](auto exception, int code) {
     const Registry registry = with_act([=](Context&, Key<Mesh>, Key<double>) { throw exception; });
     const Ran out = ran(workflow("<Act id=\"a\" file=\"a.tet\"/>"), registry, folder);
-    EXPECT_EQ(static_cast<int>(out.result.errors.at(0).failure()), 4);
+    EXPECT_EQ(static_cast<int>(out.result.errors.at(0).failure()), code);
     return std::string(out.result.errors.at(0).what());
   };
-  EXPECT_EQ(thrown(std::runtime_error("index 7")), "Act 'a': unexpected: index 7");
-  EXPECT_EQ(thrown(std::bad_alloc()), "Act 'a': not enough memory");
-  EXPECT_EQ(thrown(42), "Act 'a': unexpected failure without a message");
+  EXPECT_EQ(thrown(std::runtime_error("index 7"), 4), "Act 'a': unexpected: index 7");
+  EXPECT_EQ(thrown(std::bad_alloc(), 3), "Act 'a': not enough memory");
+  const std::error_code no_thread = std::make_error_code(std::errc::resource_unavailable_try_again);
+  EXPECT_EQ(thrown(std::system_error(no_thread), 3), "Act 'a': not enough memory for another thread; try --threads 1");
+  EXPECT_EQ(thrown(std::system_error(std::make_error_code(std::errc::io_error), "disk"), 4),
+            "Act 'a': unexpected: disk: Input/output error");
+  EXPECT_EQ(thrown(42, 4), "Act 'a': unexpected failure without a message");
 }
 
 TEST(Run, ResultThatIsNotFiniteIsRefused) {
