@@ -12,8 +12,6 @@
 namespace msml::fe {
 namespace {
 
-bool blends(const Kinematics& motion) { return motion.force_share != 1 || motion.inertia_share != 1; }
-
 /// What the start of the step leaves for its end to balance; empty where only the end counts.
 Vector carried(const Kinematics& motion, const Forces& start) {
   if (!blends(motion)) return {};
@@ -154,25 +152,6 @@ double size_of(const Run& run, const Vector& motion) {
   return motion.head(3 * run.equations.numbering().body_nodes()).norm();
 }
 
-/// Where the balance holds between the ends of a step, the method's acceleration belongs to a time tau beside its end:
-/// m tau_1 + (1 - m) tau_0 = t_0 + f h with the shares m of inertia and f of forces, exact where the true one is linear
-/// in time, and tau = t at the first state. The line through the last two leads to the end, to second order.
-void accelerate(Stage& stage, const Trial& trial, const Vector& before, double time) {
-  Run& run = stage.run;
-  const Kinematics& motion = trial.increment.motion;
-  const double m = motion.inertia_share, balanced = run.now.time + motion.force_share * motion.dt;
-  const double tau_0 = run.accelerated, tau_1 = (balanced - (1 - m) * tau_0) / m;
-  run.acceleration_now = run.now.a + (time - tau_1) / (tau_1 - tau_0) * (run.now.a - before);
-  run.accelerated = tau_1;
-  Mask given(stage.supports.fixed.size(), 0);
-  Vector velocity = run.now.v;
-  stage.supports.drive(time, 0, motion.dt, velocity, run.acceleration_now, given);
-  for (std::size_t k = 0; k < given.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (stage.supports.fixed[k] && !given[k]) run.acceleration_now[i] = run.now.a[i];
-  }
-}
-
 void keep(Stage& stage, const Trial& trial, double time, const Forces& start_forces) {
   Run& run = stage.run;
   const Vector before = run.now.u, accelerated_before = run.now.a;
@@ -182,10 +161,11 @@ void keep(Stage& stage, const Trial& trial, double time, const Forces& start_for
   Vector residual = run.newton.forces().residual();
   if (blends(trial.increment.motion)) {
     run.between = mixed(trial.increment.motion, start_forces, run.newton.forces());
-    accelerate(stage, trial, accelerated_before, time);
+    balance_end(run, trial.increment.motion, stage.supports, accelerated_before, time);
     Vector inertia;
     multiply(run.equations.mass(), run.acceleration_now, inertia);
     residual += run.newton.forces().inertia - inertia;
+    if (run.model.settings.adaptive_step && kink_at(stage.step, time)) start_anew(run, stage.supports);
   }
   run.now.time = time;
   run.set_reactions(residual, stage.supports);
@@ -243,8 +223,12 @@ bool advance(Stage& stage, double target) {
     const double stop = settings.adaptive_step ? next_stop(stage.step, run.now.time, target) : target;
     const bool last = run.now.time + 1.0001 * h >= stop;
     const double time = last ? stop : run.now.time + h, taken = time - run.now.time;
-    const Forces start_forces =
-        blends(kinematics(settings, run.now, stage.supports.fixed, taken)) ? run.newton.forces() : Forces{};
+    Forces start_forces;
+    if (blends(kinematics(settings, run.now, stage.supports.fixed, taken))) {
+      change_step(run, stage.supports, taken);
+      start_forces = run.newton.forces();
+      multiply(run.equations.mass(), run.now.a, start_forces.inertia);
+    }
     const ScaledLoads loads{{&run.equations.loads(run.now.step), 1.0, time}};
     const bool damped = std::exchange(stage.C_current, false) || run.newton.damping(run.now.u, loads, stage.C);
     Trial trial = try_step(stage, time, start_forces, damped);
@@ -283,6 +267,7 @@ void run_implicit(Run& run) {
     run.now.step = static_cast<int>(s);
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     if (s == 0) run.begin_motion(step, supports);
+    if (s > 0) start_anew(run, supports);
     run.begin_balance(step, supports);  // loads and supports may jump between steps, and the acceleration with them
     if (s == 0 && !run.sound_start()) return;
     run.mark();

@@ -78,6 +78,11 @@ double next_stop(const Step& step, double from, double to) {
   return next;
 }
 
+bool kink_at(const Step& step, double time) {
+  const double near = 2e-9 * step.dt, from = time - near, to = time + near;
+  return next_stop(step, from, to) < to;
+}
+
 void Run::check_balanced(const ScaledLoads& loads) const {
   if (free.modes.empty()) return;
   Forces forces;

@@ -117,7 +117,7 @@ void Run::begin_balance(const Step& step, const Supports& supports) {
                     "mass, or supports hold more than volumes allow; accelerations there are without them",
                     step.name));
   acceleration_now = {};
-  accelerated = now.time;
+  step_of_a = 0;
   set_reactions(newton.forces().residual(), supports);
 }
 

@@ -35,7 +35,7 @@ struct Run {
   FreeMotions free = {};               ///< rigid motions that the supports of the present step leave
   std::optional<Forces> between = {};  ///< balanced forces, where these are not those at the present time
   Vector acceleration_now = {};        ///< where that of the method, now.a, belongs to another time; empty: it does not
-  double accelerated = 0;              ///< that time
+  double step_of_a = 0;                ///< length of the steps that now.a goes with, see change_step(); 0: any
   std::optional<double> energy_at_start = {};  ///< elastic and kinetic, at the first mark
   double most_gained = 0, most_lost = 0;       ///< energy beside that at the start, work and dissipation, at any mark
   double most_energy = 0;                      ///< largest of all of these
@@ -112,6 +112,22 @@ void run_implicit(Run& run);
 /// Time steps without equations to solve; see explicit.cpp.
 void run_explicit(Run& run);
 
+/// True if the balance holds between the ends of the step.
+bool blends(const Kinematics& motion);
+/// The acceleration a of such a method belongs to a time beside the end of its step. What the balance asks for at the
+/// ends, b, comes from it: m a1 + (1 - m) a0 = f b1 + (1 - f) b0 with the shares m of inertia and f of forces. Makes it
+/// Run::acceleration_now at the end of a step; `before`: the method's acceleration at its start.
+void balance_end(Run& run, const Kinematics& motion, const Supports& supports, const Vector& before, double time);
+/// Before a step of length h. With z = h (a - b) a step of such a method does v1 + (f - 1/2) z1 = v0 + (f - 1/2) z0 +
+/// h (b0 + b1)/2 and m z1 = -(1 - m) z0 + (f - m) h (b1 - b0): momentum is kept, whatever the lengths are, if v and z
+/// pass from each step to the next. z is of second order in h as are all its effects, so that the order of the method
+/// stays, and steps of one length are untouched.
+void change_step(Run& run, const Supports& supports, double h);
+/// At kinks of loads, where b changes its slope, and at jumps, z belongs to what was before: v takes it up, and a = b.
+void start_anew(Run& run, const Supports& supports);
+
+/// True if a load curve of the step has a kink at a time.
+bool kink_at(const Step& step, double time);
 /// Where adaptive steps of a step from one time towards another end at the latest: at the next kink of its load curves.
 double next_stop(const Step& step, double from, double to);
 

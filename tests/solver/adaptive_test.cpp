@@ -2,6 +2,7 @@
 // Automatic step control: fewer steps for the same error, reported states where the scene wants them.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 
@@ -101,6 +102,78 @@ TEST(AdaptiveStep, MeetsTheKinksOfLoadCurves) {
     EXPECT_GE(outcome.linear_solves, 2) << name(integrator);
     if (integrator == Integrator::quasi_static) continue;
     EXPECT_GT(outcome.state.energies.external_work, 0) << name(integrator);
+  }
+}
+
+/// A tetrahedron in free flight whose nodes of mass 1 are pushed along x by factor(t).
+Model pushed(TimeFunction factor, double radius) {
+  Model model = oscillator_model(Integrator::generalized_alpha, true, 1, 2);
+  model.regions[0].density = 24;
+  model.settings.spectral_radius = radius;
+  model.steps[0].prescribed = {};
+  model.steps[0].forces = {{.name = "push", .nodes = {0, 1, 2, 3}, .values = {Vec3(1, 0, 0)}, .factor = factor}};
+  return model;
+}
+
+using Table = std::vector<std::array<double, 2>>;
+
+double interpolated(const Table& table, double t) {
+  for (std::size_t k = 1; k < table.size(); ++k)
+    if (t <= table[k][0])
+      return table[k - 1][1] +
+             (table[k][1] - table[k - 1][1]) * (t - table[k - 1][0]) / (table[k][0] - table[k - 1][0]);
+  return table.back()[1];
+}
+
+// Loads that are linear between kinks give their area to the momentum to round-off, whatever the steps are; without
+// loads the body then flies on as it should.
+TEST(GeneralizedAlpha, KeepsMomentumWhereTheStepsChangeTheirLength) {
+  const std::vector<Table> tables = {
+      {{0, 0}, {0.5, 0}, {0.50005, 1e4}, {0.5001, 0}, {0.7, 0}, {0.70005, -4e3}, {0.7001, 0}, {1, 0}},
+      {{0, 0}, {0.45, 0}, {0.5, 100}, {0.55, 0}, {3, 0}},
+      {{0, 1}, {0.3, 5}, {1.1, -2}, {1.4, 0}, {3, 0}}};
+  for (const Table& table : tables)
+    for (const double radius : {0.0, 0.5, 0.8, 1.0})
+      for (const double tolerance : {0.9, 1e-3, 1e-5}) {
+        std::vector<double> kinks;
+        double area = 0, moment = 0;  // of the table, the second about t = 2
+        for (std::size_t k = 0; k < table.size(); ++k) {
+          kinks.push_back(table[k][0]);
+          if (k == 0) continue;
+          const double h = table[k][0] - table[k - 1][0], left = 2 - table[k - 1][0];
+          area += h * (table[k][1] + table[k - 1][1]) / 2;
+          moment += h * (left * (table[k][1] + table[k - 1][1]) / 2 - h * (2 * table[k][1] + table[k - 1][1]) / 6);
+        }
+        Model model = pushed({[&](double t) { return interpolated(table, t); }, kinks}, radius);
+        model.settings.adaptive_step = true;
+        model.settings.step_tolerance = tolerance;
+        const Outcome outcome = solve(model, {});
+        ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+        // Newton's tolerance is 1e-12, here of forces of up to 1e4 over times of 1e-4.
+        EXPECT_NEAR(outcome.state.velocity(3, 0), area, 1e-9 * std::abs(area)) << radius << " " << tolerance;
+        // The displacement is of second order only.
+        if (tolerance < 1e-4) EXPECT_NEAR(outcome.state.displacement(3, 0), moment, 1e-3 * std::abs(moment)) << radius;
+      }
+}
+
+// Steps of the scene with different dt: the impulse is what the trapezoidal rule makes of a smooth push.
+TEST(GeneralizedAlpha, KeepsMomentumFromStepToStepOfTheScene) {
+  const auto push = [](double t) { return t < 1 ? std::pow(std::sin(M_PI * t), 2) : 0.0; };
+  for (const double radius : {0.0, 0.8, 1.0}) {
+    Model model = pushed({push, {}}, radius);
+    const Step first = model.steps[0];
+    model.steps.clear();
+    double time = 0, impulse = 0;
+    for (const auto& [dt, count] :
+         std::vector<std::pair<double, int>>{{0.1, 3}, {0.025, 4}, {0.3, 1}, {0.15, 2}, {1, 1}}) {
+      model.steps.push_back(first);
+      model.steps.back().dt = dt;
+      model.steps.back().count = count;
+      for (int k = 0; k < count; ++k, time += dt) impulse += dt * (push(time) + push(time + dt)) / 2;
+    }
+    const Outcome outcome = solve(model, {});
+    ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    EXPECT_NEAR(outcome.state.velocity(3, 0), impulse, 1e-11 * impulse) << radius;
   }
 }
 
