@@ -71,6 +71,29 @@ TEST(IncompressibleStart, AColumnBetweenWallsBeginsWithThePressureOfItsWeight) {
   EXPECT_LT(furthest_pressure(*model.mesh, state, weight), 1e-10 * density * 10);
 }
 
+// The balance of generalised alpha looks back on the start of the step: a jump of the load must be in the pressure
+// there.
+TEST(IncompressibleStart, APressureJumpsWithItsLoadFromStepToStep) {
+  for (const bool relaxes : {false, true}) {
+    Model model = block();
+    if (relaxes) model.regions[0].prony = {{0.5}, {0.01}};
+    for (const auto& [axis, place] : {std::pair{0, 0.0}, {0, 1.0}, {1, 0.0}, {1, 1.0}, {2, 0.0}})
+      model.steps[0].slides.push_back(wall(*model.mesh, axis, place));
+    model.steps.push_back(model.steps[0]);
+    model.steps[0].gravity = Vec3(0, 0, -10);
+    model.steps[1].gravity = Vec3(0, 0, 30);
+    model.steps[0].count = model.steps[1].count = 2;
+    const Outcome outcome = solve(model, [&](const State& state) {
+      const double g = state.increment <= 2 ? 10 : -30;
+      const auto weight = [&](const Vec3& X) { return density * g * (1 - X[2]); };
+      EXPECT_LT(furthest_pressure(*model.mesh, state, weight), 1e-8 * density * 10) << state.increment << relaxes;
+      EXPECT_LT(state.acceleration.cwiseAbs().maxCoeff(), 1e-8 * 10) << state.increment << relaxes;
+      return true;
+    });
+    EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  }
+}
+
 // A piston of its own material: a = P / (rho L) everywhere, and p = P (1 - X / L).
 TEST(IncompressibleStart, ALoadOnAFaceBetweenWallsPushesAllAlike) {
   Model model = block();
