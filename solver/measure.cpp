@@ -150,7 +150,10 @@ void measure_tensors(const ElementPoints& points, const Origin& origin, std::siz
     add_nine(F, share, results.deformation_gradient.data() + 9 * cell);
     add_nine(P, share, results.first_piola.data() + 9 * cell);
     add_six(0.5 * (H + H.transpose() + H.transpose() * H), share, results.green_lagrange.data() + 6 * cell);
-    if (F.determinant() != 0) add_six(Mat3(F.inverse() * P), share, results.second_piola.data() + 6 * cell);
+    if (origin.law.small_strain())
+      add_six(P, share, results.second_piola.data() + 6 * cell);  // to first order all stresses are one
+    else if (F.determinant() != 0)
+      add_six(Mat3(F.inverse() * P), share, results.second_piola.data() + 6 * cell);
   }
 }
 
@@ -206,6 +209,21 @@ void measure_element(const ElementPoints& points, const Origin& origin, std::siz
   if (request.rotation) results.rotation[cell] = deformation(points, scalar).largest_rotation;
 }
 
+/// Told the place of an element in the numbering and what its points are, from several threads.
+using StateVisitor = std::function<void(const Numbering&, std::size_t element, const ElementPoints&)>;
+
+void visit_state(const Model& model, const State& state, const StateVisitor& visit) {
+  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
+  arena.execute([&] {
+    const std::shared_ptr<const Elements> elements = state.elements ? state.elements : make_elements(model);
+    const Numbering& numbering = elements->numbering();
+    Vector u = to_vector(numbering, state.displacement);
+    put_corner_pressures(numbering, state.corner_pressure, u);
+    elements->visit_points(u, [&](std::size_t e, const ElementPoints& points) { visit(numbering, e, points); });
+  });
+}
+
 }  // namespace
 
 double rotation_angle(const Mat3& R) {
@@ -238,25 +256,27 @@ Deformation deformation(const ElementPoints& points, bool scalar) {
   return d;
 }
 
+std::vector<double> small_strains(const Model& model, const State& state) {
+  std::vector<double> strains(6 * model.mesh->kinds.size(), 0);
+  visit_state(model, state, [&](const Numbering& numbering, std::size_t e, const ElementPoints& points) {
+    double* strain = strains.data() + 6 * static_cast<std::size_t>(numbering.elements[e]);
+    for (int q = 0; q < points.count; ++q)
+      add_six(at(points.gradient, q), points.weight[q] / volume_of(points), strain);
+  });
+  return strains;
+}
+
 ElementResults element_results(const Model& model, const State& state, const ElementRequest& request) {
   ElementResults results = empty_results(request, model.mesh->kinds.size());
-  const auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-  tbb::task_arena arena(std::min(model.settings.threads, static_cast<int>(allowed)));
-  arena.execute([&] {
-    const std::shared_ptr<const Elements> elements = state.elements ? state.elements : make_elements(model);
-    const Numbering& numbering = elements->numbering();
-    Vector u = to_vector(numbering, state.displacement);
-    put_corner_pressures(numbering, state.corner_pressure, u);
-    elements->visit_points(u, [&](std::size_t e, const ElementPoints& points) {
-      const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
-      const std::span<const Vec3> places(points.place, static_cast<std::size_t>(points.count));
-      const auto law = law_of_points(model, region, numbering.elements[e], places);
-      const bool remembers = state.history_stress && !region.prony.g.empty();
-      const std::size_t offset = e * static_cast<std::size_t>(points.count);
-      const Origin origin{*law, model.formulation, remembers ? state.history_stress->data() + 6 * offset : nullptr,
-                          remembers && state.history_energy ? state.history_energy->data() + offset : nullptr};
-      measure_element(points, origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
-    });
+  visit_state(model, state, [&](const Numbering& numbering, std::size_t e, const ElementPoints& points) {
+    const Region& region = model.regions[static_cast<std::size_t>(numbering.region_of[e])];
+    const std::span<const Vec3> places(points.place, static_cast<std::size_t>(points.count));
+    const auto law = law_of_points(model, region, numbering.elements[e], places);
+    const bool remembers = state.history_stress && !region.prony.g.empty();
+    const std::size_t offset = e * static_cast<std::size_t>(points.count);
+    const Origin origin{*law, model.formulation, remembers ? state.history_stress->data() + 6 * offset : nullptr,
+                        remembers && state.history_energy ? state.history_energy->data() + offset : nullptr};
+    measure_element(points, origin, static_cast<std::size_t>(numbering.elements[e]), request, results);
   });
   return results;
 }

@@ -15,6 +15,10 @@ struct Deformation {
 /// Of a scalar problem nothing deforms.
 Deformation deformation(const ElementPoints& points, bool scalar = false);
 
+/// (grad u + grad u^T)/2 of a state, whatever the law: #cells x 6, xx yy zz xy yz xz, means over the quadrature points;
+/// zero for cells without unknowns.
+std::vector<double> small_strains(const Model& model, const State& state);
+
 /// Angle of a rotation matrix in degrees, accurate near 0 and near 180.
 double rotation_angle(const Mat3& R);
 

@@ -20,12 +20,19 @@ std::vector<FieldFacts> with_nodal() {
       {"pressure", 1, false,
        "minus a third of the trace of stress; of formulation=\"mixed\" at nodes: the unknown multiplier, minus the "
        "derivative of the volumetric energy by its measure of volume, linear in each element; at nodes where regions "
-       "meet the mean of theirs, at a point that of the region around it. pressure_nodal is the same there"},
-      {"firstPiola", 9, false, "first Piola stress: force per reference area"},
-      {"secondPiola", 6, false, "second Piola stress F^-1 P"},
+       "meet the mean of theirs, at a point that of the region around it. pressure_nodal is the same there. It is not "
+       "minus a third of the trace of stress where that measure is not J (J times as much by ln J) or where the rest "
+       "of the law has a trace: that is hydrostaticPressure"},
+      {"hydrostaticPressure", 1, false, "minus a third of the trace of stress, of formulation=\"mixed\" too"},
+      {"firstPiola", 9, false, "first Piola stress: force per reference area; of strain=\"small\" stress"},
+      {"secondPiola", 6, false, "second Piola stress F^-1 P; of strain=\"small\" stress"},
       {"strain", 6, false,
-       "the strain of the law: U - I (corotated), the symmetric gradient (small), its own otherwise"},
+       "the strain of the law: U - I (corotated), the symmetric gradient (small), greenLagrange otherwise"},
+      {"principalStrain", 3, false, "eigenvalues of strain, the largest first"},
+      {"smallStrain", 6, false, "the symmetric gradient of the displacement, (F + F^T)/2 - I, of every law"},
+      {"principalSmallStrain", 3, false, "eigenvalues of smallStrain, the largest first"},
       {"greenLagrange", 6, false, "Green-Lagrange strain (F^T F - I)/2"},
+      {"principalGreenLagrange", 3, false, "eigenvalues of greenLagrange, the largest first"},
       {"deformationGradient", 9, false, "F = dx/dX"},
       {"J", 1, false, "smallest det F of the element"},
       {"energyDensity", 1, false, "stored energy per reference volume"},

@@ -162,7 +162,8 @@ Factory<OutputRequest> energies() {
       "File: ID.csv with the columns time, elastic and kinetic energy, work of loads and moved supports, energy "
       "dissipated by damping and by viscoelastic regions (the work of their stresses that is not stored: by Maxwell's "
       "springs and dampers, exact for laws linear in their strain), momentum and angular momentum about the origin, "
-      "and in statics the share of the loads. Elastic, kinetic and dissipated energy sum to that of the first state "
+      "and in statics the share of the step's loads, 0 in the first state, which has none (quasiStatic: of the step's "
+      "time). Elastic, kinetic and dissipated energy sum to that of the first state "
       "and "
       "the work, but for what falls with the time step: with its square for Newmark, generalizedAlpha and "
       "centralDifference, in proportion to it for the others, and where loads or supports jump.");

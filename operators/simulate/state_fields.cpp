@@ -8,12 +8,20 @@
 #include <numeric>
 
 #include "msml/core/error.hpp"
-#include "solver/elements/assembly.hpp"
+#include "solver/measure.hpp"
 
 namespace msml::simulation {
 namespace {
 
 constexpr fe::ElementRequest only_fibre_stretch{.law = false, .J = false, .rotation = false, .fibre_stretch = true};
+
+/// The tensor whose eigenvalues a field has; "" of other fields.
+std::string tensor_of(const std::string& field) {
+  if (field == "principalStress") return "stress";
+  if (field == "principalStrain") return "strain";
+  if (field == "principalSmallStrain") return "smallStrain";
+  return field == "principalGreenLagrange" ? "greenLagrange" : "";
+}
 
 std::vector<double> rows(const Points& points) { return {points.data(), points.data() + points.size()}; }
 
@@ -30,11 +38,11 @@ std::vector<double> von_mises(const std::vector<double>& stress) {
   return result;
 }
 
-std::vector<double> principal_values(const std::vector<double>& stress) {
+std::vector<double> principal_values(const std::vector<double>& tensors) {
   std::vector<double> result;
-  result.reserve(stress.size() / 2);
-  for (std::size_t i = 0; i + 5 < stress.size(); i += 6) {
-    const double* s = stress.data() + i;
+  result.reserve(tensors.size() / 2);
+  for (std::size_t i = 0; i + 5 < tensors.size(); i += 6) {
+    const double* s = tensors.data() + i;
     Mat3 tensor;
     tensor << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(tensor, Eigen::EigenvaluesOnly);
@@ -90,8 +98,9 @@ std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "strain") return law().strain;
   if (name == "energyDensity") return law().energy_density;
   if (name == "vonMises") return von_mises(law().cauchy);
-  if (name == "principalStress") return principal_values(law().cauchy);
-  if (name == "pressure") return pressure_of(law().cauchy);
+  if (const std::string tensor = tensor_of(name); !tensor.empty()) return principal_values(at_elements(tensor));
+  if (name == "smallStrain") return fe::small_strains(model_, state_);
+  if (name == "pressure" || name == "hydrostaticPressure") return pressure_of(law().cauchy);
   if (name == "firstPiola") return tensors().first_piola;
   if (name == "secondPiola") return tensors().second_piola;
   if (name == "greenLagrange") return tensors().green_lagrange;
@@ -102,13 +111,11 @@ std::vector<double> StateFields::at_elements(const std::string& name) {
   throw Error("no field '" + name + "'", {}, Failure::internal);
 }
 
-/// What is not linear in the stress is taken of the recovered one.
+/// What is not linear in a tensor is taken of the recovered one.
 std::vector<double> StateFields::recovered(const std::string& name) {
-  const auto stress = [&] { return fe::recover_at_nodes(model_, law().cauchy, 6); };
-  if (name == "vonMises") return von_mises(stress());
-  if (name == "principalStress") return principal_values(stress());
-  return fe::recover_at_nodes(model_, name == "pressure" ? pressure_of(law().cauchy) : at_elements(name),
-                              facts_of(name, mixed()).components);
+  if (name == "vonMises") return von_mises(recovered("stress"));
+  if (const std::string tensor = tensor_of(name); !tensor.empty()) return principal_values(recovered(tensor));
+  return fe::recover_at_nodes(model_, at_elements(name), facts_of(name, mixed()).components);
 }
 
 std::vector<double> StateFields::nodal(const std::string& name) {

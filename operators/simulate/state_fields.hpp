@@ -53,7 +53,7 @@ class StateFields {
 /// Von Mises stress sqrt(3/2 s:s), s the deviator, of tensors of 6 components xx yy zz xy yz xz.
 std::vector<double> von_mises(const std::vector<double>& stress);
 /// Eigenvalues of such tensors, three each, the largest first.
-std::vector<double> principal_values(const std::vector<double>& stress);
+std::vector<double> principal_values(const std::vector<double>& tensors);
 /// Minus a third of the trace of such tensors.
 std::vector<double> pressure_of(const std::vector<double>& stress);
 

@@ -124,6 +124,7 @@ void Run::begin_balance(const Step& step, const Supports& supports) {
 bool Run::start_at_rest() {
   refuse_pushed_bodies();
   settle_pressures();
+  now.load_factor = 0;
   newton.prepare(now.u, {});
   newton.rest();
   if (!sound_start()) return false;
