@@ -40,6 +40,9 @@ void check_region_indices(const Record& region);
 /// Tells, where arc length is to follow the loads, of steps (at their places) all of whose loads are 0.
 void check_arc_loads(const Record& args, const Surroundings& around, const fe::Tell& tell);
 
+/// Tells, in statics, of steps (at their places) where gravity or a source alone pushes a body that no tag holds.
+void check_held(const Record& args, const Surroundings& around, const fe::Tell& tell);
+
 /// Its label, or "region2" for the second without one.
 std::string region_name(const Record& region, std::size_t position);
 

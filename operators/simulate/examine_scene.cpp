@@ -233,6 +233,7 @@ std::vector<Finding> examine_filled(const Record& args, bool every_tag) {
   if (every_tag) {
     examine_forward_euler(args, outline, fault);
     check_arc_loads(args, around, fault);
+    check_held(args, around, fault);
   }
   const Report warn = [&](const Error& error) { found.push_back({error, Kind::warning}); };
   if (outline.settings) find_idle(args, around, warn);

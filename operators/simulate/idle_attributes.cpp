@@ -33,6 +33,10 @@ bool iterates(const Beside& b) {
   return implicit(b) && !along_an_arc(b) && b.settings.linear_solver != fe::LinearSolver::direct;
 }
 bool searches(const Beside& b) { return implicit(b) && !along_an_arc(b); }
+bool repeats(const Beside& b) { return implicit(b) && b.settings.newton_iterations > 1; }
+bool given(const Beside& b, const char* attribute) {
+  return b.record.given[static_cast<std::size_t>(b.record.description->find(attribute))];
+}
 bool clamped(const Beside& b) { return text_of(b.record, "inversion") == "clamped"; }
 bool ramps(const Beside& b) {
   const Record& record = b.record;
@@ -45,6 +49,7 @@ bool ramps(const Beside& b) {
 }
 
 constexpr const char* implicit_words = "an implicit timeIntegration";
+constexpr const char* repeating_words = "an implicit timeIntegration and newtonIterations above 1";
 constexpr const char* searching_words = "an implicit timeIntegration without arcLength";
 constexpr const char* dynamic_words = "a dynamic timeIntegration";
 
@@ -68,8 +73,9 @@ constexpr Need table[] = {
     {"solver", "linearSolver", searches,
      "an implicit timeIntegration without arcLength, which has a solver of its own"},
     {"solver", "newtonIterations", implicit, implicit_words},
-    {"solver", "tolerance", implicit, implicit_words},
-    {"solver", "lineSearch", searches, searching_words},
+    {"solver", "tolerance", repeats, repeating_words},
+    {"solver", "lineSearch", [](const Beside& b) { return searches(b) && repeats(b); },
+     "an implicit timeIntegration without arcLength, and newtonIterations above 1"},
     {"solver", "definiteness", searches, searching_words},
     {"solver", "untangle", implicit, implicit_words},
     {"solver", "allowUnstable", may_grow, "timeIntegration=\"Newmark\" or an explicit one"},
@@ -79,9 +85,8 @@ constexpr Need table[] = {
     {"", "damping", dynamic, dynamic_words},
     {"", "rayleighStiffnes", dynamic, dynamic_words},
     {"displacementConstraint", "ramp", ramps, "a displacement without a table and without t"},
-    {"probe", "count",
-     [](const Beside& b) { return b.record.given[static_cast<std::size_t>(b.record.description->find("along"))]; },
-     "along"}};
+    {"displacement", "timestep", [](const Beside& b) { return !given(b, "every"); }, "every to be absent, which wins"},
+    {"probe", "count", [](const Beside& b) { return given(b, "along"); }, "along"}};
 
 /// True if both are the same number, word or expression.
 template <class... Types>
@@ -132,6 +137,9 @@ void find_idle(const Record& args, const Surroundings& around, const std::functi
           args.where));
   }
   find_idle_fields(args, around, tell);
+  if (args.tag() == "mass" && around.scalar == true)
+    tell(Error("mass: it means nothing beside diffusionMaterial, whose problem is stationary. Leave it out",
+               args.where));
   for (const Record& child : args.children) find_idle(child, around, tell);
 }
 
