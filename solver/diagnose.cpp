@@ -10,11 +10,14 @@
 namespace msml::fe {
 namespace {
 
+bool incompressible(const Model& model) {
+  return std::ranges::any_of(model.regions, [](const Region& region) { return region.law->incompressible(); });
+}
+
 /// Newmark's average acceleration balances the pressures of incompressible regions at the ends of steps alone: between
 /// large motions they swing from step to step, and no smaller one helps.
 bool pressures_swing(const Model& model) {
-  return model.settings.integrator == Integrator::newmark &&
-         std::ranges::any_of(model.regions, [](const Region& region) { return region.law->incompressible(); });
+  return model.settings.integrator == Integrator::newmark && incompressible(model);
 }
 
 std::string advice(const Run& run, const IncrementResult& result) {
@@ -53,6 +56,10 @@ std::string advice(const Run& run, const IncrementResult& result) {
                "Try " +
                smaller + ", arcLength=\"true\", a dynamic timeIntegration, or another law";
       if (run.equations.numbering().scalar) return "a part of the body has no fixedValue: give it one";
+      if (incompressible(run.model))
+        return "either a part of the body can move freely: fix it; or supports hold an incompressible region all "
+               "around, "
+               "which leaves its pressure open: set a part of its surface free, or take a finite bulkModulus";
       return "either a part of the body can move freely: fix it, or join parts that touch only at a node or an edge; "
              "or "
              "its stiffnesses lie too far apart to be told from nothing: flat elements, a poissonRatio too near 0.5";

@@ -97,11 +97,11 @@ void Run::begin_motion(const Step& step, const Supports& supports) {
     if (share > noted_correction)
       outcome.notes.push_back(
           fmt::format("the initial {} is changed by up to {:.2g} of its largest value, so that incompressible regions "
-                      "keep their volume on this mesh{}",
-                      what, share, supports.moved.empty() ? "" : ", also where the supports set them off"));
+                      "keep their volume on this mesh",
+                      what, share));
   };
   note("displacement", kept.displacement);
-  note("velocity", before.isZero(0) ? 0 : kept.velocity);
+  if (!before.isZero(0)) note(supports.moved.empty() ? "velocity" : "velocity (by moving supports too)", kept.velocity);
   settle_pressures();
 }
 

@@ -274,5 +274,19 @@ TEST(IncompressibleStart, SupportsThatMoveSetTheBodyOff) {
   EXPECT_LT(furthest_pressure(*model.mesh, state, [](const Vec3& X) { return density * 10 * (1 - X[0]); }), 1e-6);
 }
 
+// Any pressure will do: the start says so, and the first step ends there.
+TEST(IncompressibleStart, ABodyHeldAllAroundHasNoPressureOfItsOwn) {
+  Model model = body_of(unit_mesh(3, CellKind::tet10));
+  model.steps[0].gravity = Vec3(0, 0, -10);
+  model.steps[0].prescribed = {
+      fix(points_where(*model.mesh, [](const Vec3& x) { return x.minCoeff() < 1e-9 || x.maxCoeff() > 1 - 1e-9; }))};
+  const Outcome outcome = solve(model, {});
+  EXPECT_THAT(outcome.notes,
+              ::testing::Contains(::testing::HasSubstr("pressures of incompressible regions at its start "
+                                                       "are not determined")));
+  EXPECT_EQ(outcome.stop, Stop::singular);
+  EXPECT_THAT(outcome.diagnosis, ::testing::HasSubstr("hold an incompressible region all around"));
+}
+
 }  // namespace
 }  // namespace msml::fe
