@@ -87,7 +87,7 @@ void Equations::evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces
 }
 
 void Equations::evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C,
-                                Forces& forces) const {
+                                Forces& forces, const Vector* w) const {
   multiply(mass_, acceleration, forces.inertia);
   forces.damping = Vector::Zero(size());
   Vector product;
@@ -96,7 +96,7 @@ void Equations::evaluate_motion(const Vector& velocity, const Vector& accelerati
     forces.damping += settings_.damping_mass * product;
   }
   if (C) {
-    multiply(*C, velocity, product);
+    multiply(*C, w ? *w : velocity, product);
     forces.damping += product;
   }
 }

@@ -68,8 +68,9 @@ class Equations {
   bool has_followers() const { return has_followers_; }  ///< true if a step has a follower pressure
   /// The external forces alone.
   void evaluate_loads(const Vector& u, const ScaledLoads& loads, Forces& forces, BlockMatrix* followers) const;
-  /// Inertia M a, and damping alpha M v + C v; `C` may be null.
-  void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C, Forces& forces) const;
+  /// Inertia M a, and damping alpha M v + C w; `C` may be null, `w` is v where it is not given.
+  void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C, Forces& forces,
+                       const Vector* w = nullptr) const;
   bool has_dampers() const { return has_dampers_; }  ///< true if a spring of a step has one
 
  private:

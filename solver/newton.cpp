@@ -162,8 +162,9 @@ LinearStatus Newton::direction(const Increment& increment, const Vector& u, cons
   return status == LinearStatus::not_positive_definite ? LinearStatus::singular : status;
 }
 
-void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix) {
-  equations_.evaluate_motion(velocity, acceleration, damping_matrix, forces_);
+void Newton::move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix,
+                  const Vector* matrix_velocity) {
+  equations_.evaluate_motion(velocity, acceleration, damping_matrix, forces_, matrix_velocity);
 }
 
 void Newton::rest() { forces_.inertia = forces_.damping = Vector::Zero(equations_.size()); }

@@ -13,7 +13,7 @@ struct Increment {
   Vector target;  ///< displacement of fixed unknowns at the end
   ScaledLoads loads;
   Kinematics motion;
-  const BlockMatrix* damping_matrix = nullptr;  ///< of the start of the step, beside alpha M; null without
+  const BlockMatrix* damping_matrix = nullptr;  ///< beside alpha M; null without
   Vector offset = {};  ///< residual to end with: minus what the start of the step puts into the balance; empty: zero
   const Slides* slides = nullptr;  ///< nodes in planes; null: none
   Vector expected = {};            ///< change of the displacement that is likely; empty: none
@@ -87,8 +87,9 @@ class Newton {
   void stiffness(const Vector& u, const ScaledLoads& loads, BlockMatrix& K);
   /// C = beta K + dampers at u, with that stiffness: an indefinite one would feed energy in. False if there is none.
   bool damping(const Vector& u, const ScaledLoads& loads, BlockMatrix& C);
-  /// Adds inertia and damping to the forces, or none.
-  void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix);
+  /// Adds inertia and damping to the forces, or none; see Equations::evaluate_motion.
+  void move(const Vector& velocity, const Vector& acceleration, const BlockMatrix* damping_matrix,
+            const Vector* matrix_velocity = nullptr);
   void rest();
   /// converged, or what is wrong with the state evaluated last: not finite, an element inverted whose law does not
   /// survive that, or in statics a collapsed one.

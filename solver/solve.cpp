@@ -83,6 +83,11 @@ Outcome run_model(const Model& model, const Observer& observer) {
         fmt::format("{} increments began with elements inside out or crushed; the stable "
                     "neo-Hookean law led the body out of it, and its own laws went on from there",
                     run.untangled));
+  if (run.unsettled > 0)
+    outcome.warnings.push_back(
+        fmt::format("in {} time steps what damps turned or stiffened so far that its forces did not settle on those of "
+                    "the end of the step: take a smaller dt",
+                    run.unsettled));
   outcome.state = run.state();
   note_memory(run, outcome);
   outcome.check = check_answer(run);

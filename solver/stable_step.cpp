@@ -112,13 +112,10 @@ std::optional<double> forward_euler_growth(const BlockMatrix& K, const BlockMatr
   return growth;
 }
 
-double stable_step(Integrator integrator, double largest, double alpha, double beta) {
-  const double x = largest, c = alpha + beta * largest;
-  if (integrator != Integrator::forward_euler) {
-    // 4 - 2 c dt - x dt^2 > 0
-    if (x <= 0) return c > 0 ? 2 / c : std::numeric_limits<double>::infinity();
-    return 4 / (c + std::sqrt(c * c + 4 * x));
-  }
+double stable_step(Integrator integrator, double largest, double alpha, double damping) {
+  const double x = largest, c = alpha + damping;
+  if (integrator == Integrator::central_difference) return 2 / (damping + std::sqrt(damping * damping + x));
+  if (integrator == Integrator::symplectic_euler) return 4 / (c + std::sqrt(c * c + 4 * x));
   // x dt < c and 4 - 2 c dt + x dt^2 > 0 are linear in w^2: the ends of the spectrum decide.
   double limit = alpha > 0 ? 2 / alpha : std::numeric_limits<double>::infinity();
   if (x <= 0) return limit;

@@ -13,12 +13,16 @@ namespace msml::fe {
 /// unknowns are fixed.
 double largest_eigenvalue(const BlockMatrix& K, const ScalarMatrix& M, const Mask& fixed);
 
-/// The largest time step at which no vibration x'' + (alpha + beta w^2) x' + w^2 x = 0, 0 <= w^2 <= largest, grows
-/// under an explicit method; infinite if largest = 0 and nothing damps. With c = alpha + beta w^2: symplectic Euler and
-/// central differences, the damping force taken half a step behind: dt < 2 (sqrt(1 + z^2) - z)/w with z = c/(2 w);
-/// forward Euler: dt < c/w^2 = 2 z/w, or, overdamped, dt < (c - sqrt(c^2 - 4 w^2))/w^2. Without damping 2/w and 0.
-/// (Schur's criterion on the amplification matrix of one step.)
-double stable_step(Integrator integrator, double largest, double alpha, double beta);
+/// The largest time step at which no vibration x'' + (alpha + c) x' + w^2 x = 0 with 0 <= w^2 <= `largest` and 0 <= c
+/// <= `damping` grows under an explicit method, for forward Euler with c = damping w^2/largest; infinite if nothing
+/// acts. Without damping 2/w and, for forward Euler, 0. Otherwise, from Schur's criterion on the amplification matrix
+/// of one step:
+/// - symplectic Euler, damped by the velocity before the kick: (w dt)^2 + 2 (alpha + c) dt < 4,
+///   so dt < 2 (sqrt(1 + z^2) - z)/w with z = (alpha + c)/(2 w);
+/// - central differences, alpha x' with the velocity of the present, c x' with 3/2 and -1/2 of those of the last two
+///   half steps: (w dt)^2 + 4 c dt < 4 at any alpha, so dt < 2 (sqrt(1 + 4 z^2) - 2 z)/w with z = c/(2 w);
+/// - forward Euler: dt < 2 z/w with z = (alpha + c)/(2 w), or, overdamped, dt < 2 (z - sqrt(z^2 - 1))/w.
+double stable_step(Integrator integrator, double largest, double alpha, double damping);
 
 /// The largest time step of forward Euler for M x'' + C x' + K x = 0 on few free unknowns: |1 + dt l| <= 1 for every
 /// eigenvalue l of the motion, so dt <= -2 Re l / |l|^2. 0 if a vibration is not damped; infinite if nothing moves but

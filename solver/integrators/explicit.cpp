@@ -14,25 +14,33 @@ namespace {
 constexpr double most_growth = 2;  // of an undamped motion over the rest of a run
 constexpr int watch_every = 100;   // time steps between estimates of the stable one, where the stiffness may change
 
+/// What damping sees in a time step.
+struct Braking {
+  Vector velocity, led;  ///< for alpha M before the step's acceleration, and for the damping beside it
+  double implicit = 0;   ///< how much of the acceleration the velocity for alpha M still takes up
+};
+
 struct Explicit {
   Run& run;
   BlockMatrix C;        ///< damping beside alpha M
   bool damped = false;  ///< there is such damping
   bool warned = false;  ///< of motions that grow
 
-  /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given.
-  void balance(const Vector& u, const Vector& damping_velocity, const ScaledLoads& loads, const Supports& supports,
-               Vector& a) {
+  /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given. alpha M brakes the velocity with
+  /// its share of that acceleration: a diagonal equation.
+  void balance(const Vector& u, Braking braking, const ScaledLoads& loads, const Supports& supports, Vector& a) {
     run.newton.look(u, loads);
-    run.newton.move(damping_velocity, Vector::Zero(u.size()), damped ? &C : nullptr);
-    Vector force = run.newton.forces().residual();
+    run.newton.move(braking.velocity, Vector::Zero(u.size()), damped ? &C : nullptr, &braking.led);
+    Vector force = run.newton.forces().residual() / (1 + run.model.settings.damping_mass * braking.implicit);
     supports.slides.project(force);
     const ScalarMatrix& mass = run.equations.mass();
     for (Eigen::Index k = 0; k < a.size(); ++k)
-      if (!supports.fixed[static_cast<std::size_t>(k)])
+      if (!supports.fixed[static_cast<std::size_t>(k)]) {
         a[k] =
             force[k] / mass.values[static_cast<std::size_t>(mass.pattern->diagonal[static_cast<std::size_t>(k / 3)])];
-    run.newton.move(damping_velocity, a, damped ? &C : nullptr);
+        braking.velocity[k] += braking.implicit * a[k];
+      }
+    run.newton.move(braking.velocity, a, damped ? &C : nullptr, &braking.led);
   }
 
   /// Dampers are no multiple of M and K, but no motion is damped more than the one with the largest eigenvalue of C.
@@ -42,8 +50,8 @@ struct Explicit {
     if (run.equations.has_dampers() && s.integrator == Integrator::forward_euler && s.damping_mass == 0)
       if (const auto limit = forward_euler_step(K, C, run.equations.mass(), fixed)) return *limit;
     if (!run.equations.has_dampers() || s.integrator == Integrator::forward_euler)
-      return stable_step(s.integrator, largest, s.damping_mass, s.damping_stiffness);
-    return stable_step(s.integrator, largest, s.damping_mass + largest_eigenvalue(C, run.equations.mass(), fixed), 0);
+      return stable_step(s.integrator, largest, s.damping_mass, s.damping_stiffness * largest);
+    return stable_step(s.integrator, largest, s.damping_mass, largest_eigenvalue(C, run.equations.mass(), fixed));
   }
 
   /// Forward Euler lets every motion grow that nothing damps, such as a pendulum's swing beside a damped spring: that
@@ -68,6 +76,7 @@ struct Explicit {
     if (settings.allow_unstable) return true;
     BlockMatrix K(C.pattern);
     run.newton.stiffness(run.now.u, loads, K);
+    if (run.equations.has_dampers()) run.newton.damping(run.now.u, loads, C);
     const double largest = largest_eigenvalue(K, run.equations.mass(), fixed);
     if (!std::isfinite(largest)) return left > 0 || run.now.increment == 0 || blown_up(step);
     const double limit = limit_of(K, largest, fixed);
@@ -119,10 +128,11 @@ struct Explicit {
     const double dt = step.dt;
     const bool centred = method == Integrator::central_difference;
     run.equations.begin_step(dt);
-    damped = run.newton.damping(now.u, loads, C);
+    if (!centred) damped = run.newton.damping(now.u, loads, C);
     if (method == Integrator::forward_euler) now.u += dt * now.v;
     now.v += (centred ? 0.5 * dt : dt) * now.a;
     if (method != Integrator::forward_euler) now.u = before.u + dt * now.v;
+    Vector led = centred ? now.v + 0.5 * dt * now.a : now.v;
     const Vector target = supports.at(static_cast<double>(k) / step.count, time);
     for (Eigen::Index i = 0; i < target.size(); ++i)
       if (supports.fixed[static_cast<std::size_t>(i)]) {
@@ -131,13 +141,15 @@ struct Explicit {
         now.a[i] = (now.v[i] - before.v[i]) / dt;
       }
     now.time = loads.front().time = time;
-    Vector end = now.v;  // that of the middle of the step is what damps
     Mask given(supports.fixed.size(), 0);
-    if (centred) supports.drive(time, 0, dt, end, now.a, given);
-    balance(now.u, now.v, loads, supports, now.a);
+    if (centred) supports.drive(time, 0, dt, now.v, now.a, given);
+    for (Eigen::Index i = 0; i < target.size(); ++i)
+      if (supports.fixed[static_cast<std::size_t>(i)]) led[i] = now.v[i];
+    if (centred) damped = run.newton.damping(now.u, loads, C);
+    balance(now.u, {now.v, led, centred ? 0.5 * dt : 0}, loads, supports, now.a);
     if (centred)
       for (Eigen::Index i = 0; i < target.size(); ++i)
-        now.v[i] = supports.fixed[static_cast<std::size_t>(i)] ? end[i] : now.v[i] + 0.5 * dt * now.a[i];
+        if (!supports.fixed[static_cast<std::size_t>(i)]) now.v[i] += 0.5 * dt * now.a[i];
     if (!sound(step, before, supports, loads)) return false;
     ++now.increment;
     run.set_reactions(run.newton.forces().residual(), supports);
@@ -180,7 +192,7 @@ void run_explicit(Run& run) {
     method.damped = run.newton.damping(run.now.u, loads, method.C);
     run.now.a.setZero();
     supports.set_off_rates(run.now.time, step.dt, run.now.a);
-    method.balance(run.now.u, run.now.v, loads, supports, run.now.a);
+    method.balance(run.now.u, {run.now.v, run.now.v}, loads, supports, run.now.a);
     run.set_reactions(run.newton.forces().residual(), supports);
     if (s == 0 && !run.sound_start()) return;
     run.mark();

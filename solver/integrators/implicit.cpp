@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -33,7 +34,7 @@ struct Stage {
   double start;
   BlockMatrix& C;                         ///< damping beside alpha M that the time step is taken with
   double size = 0;                        ///< largest displacement so far, see size_of()
-  std::optional<BlockMatrix> C_end = {};  ///< the same at the end of the time step, see turns()
+  std::optional<BlockMatrix> C_end = {};  ///< the same at the end of the time step, see turned()
   bool C_end_current = false;             ///< it belongs to the end of the step that was tried last
   bool C_current = false;                 ///< C belongs to the present displacement
 };
@@ -42,6 +43,7 @@ struct Trial {
   Increment increment;
   IncrementResult result;
   Vector velocity, acceleration;
+  double turned = 0;  ///< what is left of turned()
 };
 
 /// Supports that move by functions of time have the velocity and acceleration of these. Backward Euler takes
@@ -56,16 +58,13 @@ void follow(const Supports& supports, double time, Kinematics& motion) {
   supports.drive(time, shift, motion.dt, motion.given_velocity, motion.given_acceleration, motion.given);
 }
 
-constexpr double tolerable_turn = 1e-3;  // of the damping force beside all others, by which turning may change it
-
-/// True if the stiffness that damps has turned with the body, so that a rigid motion would be braked: K x_dot = 0 holds
-/// where the body is, and the velocity is that of the end of the step. C_end then is the damping there. With one linear
-/// solve per step the rotation is that of the start, as its K.
-bool turns(Stage& stage, const Trial& trial) {
+/// How far what damps has turned or stiffened with the body, as a share of all forces: K x_dot = 0 holds where the body
+/// is, a damper acts along its present line, and the velocity is that of the end of the step. C_end then is the damping
+/// there. With one linear solve per step it is that of the start.
+double turned(Stage& stage, const Trial& trial) {
   Run& run = stage.run;
-  const Settings& settings = run.model.settings;
   stage.C_end_current = false;
-  if (settings.damping_stiffness == 0 || settings.newton_iterations == 1 || run.equations.small_strain()) return false;
+  if (run.model.settings.newton_iterations == 1 || run.equations.small_strain()) return 0;
   if (!stage.C_end) stage.C_end.emplace(stage.C.pattern);
   run.newton.damping(trial.result.u, trial.increment.loads, *stage.C_end);
   stage.C_end_current = true;
@@ -73,17 +72,28 @@ bool turns(Stage& stage, const Trial& trial) {
   const Vector velocity = trial.increment.motion.velocity_at(trial.result.u);
   multiply(stage.C, velocity, at_start);
   multiply(*stage.C_end, velocity, at_end);
-  return free_norm(at_end - at_start, stage.supports.fixed) > tolerable_turn * trial.result.scale;
+  Vector change = at_end - at_start;
+  stage.supports.slides.project(change);
+  const double size = free_norm(change, stage.supports.fixed);
+  return size > 0 ? size / trial.result.scale : 0;
 }
 
-constexpr int most_turns = 4;  // the stress of what is left of the braking brakes once more, a thousandth as much
+constexpr int most_turns = 12;
+constexpr double tolerable_turn = 1e-3;  // backward Euler has no second order to lose
 
-/// Newton's way to the end of the step, again from there while the damping turned.
+/// Newton's way to the end of the step, again from there while the damping turned. The rest falls by about half of the
+/// step's rotation or strain each time; where it does not, round-off is all that is left, or the step too large.
 IncrementResult reach(Stage& stage, Trial& trial) {
   Run& run = stage.run;
+  const Settings& settings = run.model.settings;
   trial.result = run.reach(trial.increment);
   if (trial.result.stop != Stop::converged || !trial.increment.damping_matrix) return trial.result;
-  for (int turn = 0; turn < most_turns && turns(stage, trial); ++turn) {
+  const double enough = settings.integrator == Integrator::implicit_euler ? tolerable_turn : settings.tolerance;
+  double before = std::numeric_limits<double>::infinity();
+  for (int turn = 0;; ++turn) {
+    trial.turned = turned(stage, trial);
+    if (trial.turned <= enough || turn == most_turns || !(trial.turned < 0.5 * before)) return trial.result;
+    before = trial.turned;
     trial.increment.start = trial.result.u;
     std::swap(stage.C.values, stage.C_end->values);
     stage.C_end_current = false;
@@ -92,11 +102,10 @@ IncrementResult reach(Stage& stage, Trial& trial) {
     if (next.stop != Stop::converged) {
       std::swap(stage.C.values, stage.C_end->values);
       run.newton.forget();
-      break;
+      return trial.result;
     }
     trial.result = std::move(next);
   }
-  return trial.result;
 }
 
 /// Size of the forces that moving supports put into a body, as far as its tangent at the end of the step tells: from
@@ -173,6 +182,7 @@ void keep(Stage& stage, const Trial& trial, double time, const Forces& start_for
   run.account(before);
   if (stage.C_end_current) std::swap(stage.C.values, stage.C_end->values);
   stage.C_current = std::exchange(stage.C_end_current, false);
+  run.unsettled += trial.turned > tolerable_turn;
   stage.size = std::max(stage.size, size_of(run, run.now.u));
   ++run.pieces;
 }

@@ -42,6 +42,7 @@ struct Run {
   bool tangled = false;  ///< at the last mark an element had less than a tenth of its volume, or was inside out
   std::unique_ptr<Untangler> untangler = {};
   int halved = 0;     ///< pieces of load or time that failed and were halved
+  int unsettled = 0;  ///< time steps whose damping forces the end of the step would change by a thousandth of all
   int untangled = 0;  ///< increments that went on from where the untangler led
 
   /// Takes up what the supports of a static step leave free, if anything.

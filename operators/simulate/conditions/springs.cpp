@@ -26,7 +26,8 @@ SpringKeys add_spring(Description& tag) {
           "damping", {.unit = "force time/length",
                       .range = nonnegative(),
                       .fallback = 0.0,
-                      .doc = "force per rate of the length; in all directions where restLength is 0; expressions too"}),
+                      .doc = "force per rate of the length; in all directions where restLength is 0; expressions too. "
+                             "Its line in time steps is that of dampingRayleighRatioStiffness's K"}),
       tag.parameter<Formula>(
           "restLength",
           {.unit = "length",
