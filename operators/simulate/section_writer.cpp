@@ -8,6 +8,7 @@
 
 #include "operators/simulate/output_writer.hpp"
 #include "operators/simulate/records.hpp"
+#include "operators/simulate/section_loads.hpp"
 #include "operators/simulate/spots.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
@@ -16,8 +17,6 @@
 namespace msml::simulation {
 namespace {
 
-using Barycentric = std::array<double, 4>;  ///< of the corners; 0 for those an element does not have
-
 /// A part of the section in one element: a triangle, in the plane a segment, on a line a point.
 struct Piece {
   int element;
@@ -25,78 +24,30 @@ struct Piece {
   std::vector<double> weights;  ///< of the element's nodes at the middle of the piece
 };
 
-/// The plane in the reference configuration.
-struct Plane {
-  Vec3 point, normal;  ///< normal of length 1
-  double tolerance;    ///< distances below it are 0
-  double distance(const Vec3& x) const {
-    const double d = normal.dot(x - point);
-    return std::abs(d) < tolerance ? 0 : d;
-  }
-};
-
-/// Where the plane crosses the edges of an element from its side to the side of the normal, in order around the
-/// section. A corner on the plane counts to the side of the normal.
-std::vector<Barycentric> crossings(const Mesh& mesh, int element, const Plane& plane) {
-  const int corners = corner_count(mesh.kinds[static_cast<std::size_t>(element)]);
-  std::vector<std::size_t> below, above;
-  Barycentric d{};
-  for (std::size_t a = 0; a < static_cast<std::size_t>(corners); ++a) {
-    d[a] = plane.distance(mesh.points.row(mesh.cell(element)[a]).transpose());
-    (d[a] < 0 ? below : above).push_back(a);
-  }
-  std::vector<Barycentric> found;
-  for (std::size_t i = 0; i < below.size(); ++i)
-    for (std::size_t j = 0; j < above.size(); ++j) {
-      // Back and forth, so that neighbours in the list share a face of a tetrahedron.
-      const std::size_t m = below[i], p = above[i % 2 == 0 ? j : above.size() - 1 - j];
-      Barycentric at{};
-      at[p] = d[m] / (d[m] - d[p]);
-      at[m] = 1 - at[p];
-      found.push_back(at);
-    }
-  return found;
-}
-
-Vec3 position(const Mesh& mesh, int element, const Barycentric& at) {
-  Vec3 x = Vec3::Zero();
-  for (int a = 0; a < corner_count(mesh.kinds[static_cast<std::size_t>(element)]); ++a)
-    x += at[static_cast<std::size_t>(a)] * mesh.points.row(mesh.cell(element)[a]).transpose();
-  return x;
-}
-
-/// Adds the part of the section between one, two or three places.
-void add_piece(const Mesh& mesh, int element, double thickness, const std::vector<Barycentric>& ends,
-               std::vector<Piece>& pieces) {
-  const auto x = [&](std::size_t i) { return position(mesh, element, ends[i]); };
+Piece piece_of(const Mesh& mesh, int element, double thickness, const Facet& facet) {
+  const auto x = [&](std::size_t i) { return position(mesh, element, facet[i]); };
   double area = thickness;
-  if (ends.size() == 2) area *= (x(1) - x(0)).norm();
-  if (ends.size() == 3) area = 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
-  if (!(area > 0)) return;
+  if (facet.size() == 2) area *= (x(1) - x(0)).norm();
+  if (facet.size() == 3) area = 0.5 * (x(1) - x(0)).cross(x(2) - x(0)).norm();
   Barycentric middle{};
-  for (const Barycentric& end : ends)
-    for (std::size_t a = 0; a < 4; ++a) middle[a] += end[a] / static_cast<double>(ends.size());
-  pieces.push_back({element, area, shape_weights(mesh.kinds[static_cast<std::size_t>(element)], middle)});
+  for (const Barycentric& end : facet)
+    for (std::size_t a = 0; a < 4; ++a) middle[a] += end[a] / static_cast<double>(facet.size());
+  return {element, area, shape_weights(mesh.kinds[static_cast<std::size_t>(element)], middle)};
 }
 
-std::vector<Piece> cut(const Body& body, double thickness, const Plane& plane) {
+std::vector<Piece> cut(const Body& body, double thickness, const CuttingPlane& plane) {
   std::vector<Piece> pieces;
   for (const int element : body.elements) {
-    const std::vector<Barycentric> ends = crossings(*body.mesh, element, plane);
-    if (ends.empty()) continue;
-    if (ends.size() <= 3) {
-      add_piece(*body.mesh, element, thickness, ends, pieces);
-      continue;
-    }
-    add_piece(*body.mesh, element, thickness, {ends[0], ends[1], ends[2]}, pieces);
-    add_piece(*body.mesh, element, thickness, {ends[0], ends[2], ends[3]}, pieces);
+    if (side_of(*body.mesh, element, plane) != PlaneSide::both) continue;
+    for (const Facet& facet : cut_element(*body.mesh, element, plane).section)
+      if (Piece piece = piece_of(*body.mesh, element, thickness, facet); piece.area > 0) pieces.push_back(piece);
   }
   return pieces;
 }
 
 /// A function on the points of the body's mesh: 1 at corners on the side of the normal, else 0; at mid nodes the mean
 /// of the corners of the edge.
-std::vector<double> sides(const Body& body, const Plane& plane) {
+std::vector<double> sides(const Body& body, const CuttingPlane& plane) {
   const Mesh& mesh = *body.mesh;
   std::vector<double> side(static_cast<std::size_t>(mesh.point_count()), 0);
   const int corners = corner_count(body.kind);
@@ -138,11 +89,6 @@ std::vector<Bridge> bridges(const Mesh& mesh, const std::vector<int>& elements, 
   }
   return found;
 }
-
-/// Sums over bridges.
-struct Pull {
-  Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-};
 
 /// Mean over an element of a quantity given at its nodes: weight of corners and of mid nodes.
 Vec3 mean_over(const Mesh& mesh, int element, const Points& values) {
@@ -202,20 +148,20 @@ void add_pull(const Mesh& mesh, const std::vector<Bridge>& bridges, const fe::El
 /// A mesh embedded in the body, with what of it the plane cuts.
 class Inner {
  public:
-  Inner(const Mesh& body, const fe::Inlay& inlay, const std::vector<double>& side, int threads)
-      : body_(body), ties_(inlay.ties) {
-    model_.mesh = inlay.mesh;
-    model_.regions = {inlay.region};
-    model_.settings.threads = threads;
+  Inner(const fe::Model& body, const fe::Inlay& inlay, const CuttingPlane& plane, const std::vector<double>& side)
+      : body_(body),
+        ties_(inlay.ties),
+        model_{.mesh = inlay.mesh, .regions = {inlay.region}, .settings = body.settings} {
     elements_ = fe::make_elements(model_);
     std::vector<double> own(ties_.size(), 0);
     for (std::size_t n = 0; n < own.size(); ++n)
       follow(n, [&](int node, double weight) { own[n] += weight * side[static_cast<std::size_t>(node)]; });
     bridges_ = bridges(*inlay.mesh, inlay.region.elements, own);
+    loads_ = std::make_unique<const SectionLoads>(model_, plane, own);
   }
 
-  /// Of a displacement and the arms of the body's points.
-  void add(const Points& displacement, const Vec3& centre, const Points& arms, Pull& sum) const {
+  /// Of a state of the body and the arms of its points.
+  void add(const fe::State& body, const Points& displacement, const Vec3& centre, const Points& arms, Pull& sum) const {
     fe::State state;
     state.elements = elements_;
     state.displacement = Points::Zero(model_.mesh->points.rows(), 3);
@@ -227,8 +173,13 @@ class Inner {
       });
     const Points& X = model_.mesh->points;
     const bool small = model_.regions.front().law->small_strain();
-    add_pull(*model_.mesh, bridges_, fe::element_results(model_, state, needed), small ? X : X + state.displacement,
-             centre, own, sum);
+    const Points x = small ? X : Points(X + state.displacement);
+    add_pull(*model_.mesh, bridges_, fe::element_results(model_, state, needed), x, centre, own, sum);
+    const std::vector<ActingStep> acting = acting_steps(body_, body);
+    Pull loads;
+    loads_->add_masses([&](int n) { return load_on(n, body, acting); }, x, centre, loads);
+    sum.force -= loads.force;
+    sum.moment -= loads.moment;
   }
 
  private:
@@ -236,14 +187,23 @@ class Inner {
   void follow(std::size_t n, const Visit& visit) const {
     const fe::Tie& tie = ties_[n];
     for (std::size_t a = 0; tie.element >= 0 && a < tie.weights.size(); ++a)
-      visit(body_.cell(tie.element)[a], tie.weights[a]);
+      visit(body_.mesh->cell(tie.element)[a], tie.weights[a]);
   }
 
-  const Mesh& body_;
+  /// Force per mass at a point: it moves with the body.
+  Vec3 load_on(int point, const fe::State& state, const std::vector<ActingStep>& acting) const {
+    Vec3 load = Vec3::Zero();
+    follow(static_cast<std::size_t>(point),
+           [&](int node, double weight) { load += weight * force_per_mass(body_, state, acting, node); });
+    return load;
+  }
+
+  const fe::Model& body_;
   const std::vector<fe::Tie>& ties_;
   fe::Model model_;
   std::shared_ptr<const fe::Elements> elements_;
   std::vector<Bridge> bridges_;
+  std::unique_ptr<const SectionLoads> loads_;
 };
 
 class SectionWriter final : public TableWriter {
@@ -251,14 +211,16 @@ class SectionWriter final : public TableWriter {
   SectionWriter(const Simulation& simulation, const OutputRequest& request, const std::filesystem::path& folder)
       : TableWriter(request, folder,
                     {"time", "area", "force_x", "force_y", "force_z", "moment_x", "moment_y", "moment_z"}),
+        model_(simulation.model),
         body_(simulation.body),
         normal_(request.normal.normalized()) {
-    const Plane plane{*request.point, normal_, 1e-10 * diagonal(*body_.mesh)};
+    const CuttingPlane plane{*request.point, normal_, 1e-10 * diagonal(*body_.mesh)};
     pieces_ = cut(body_, simulation.model.thickness, plane);
     side_ = sides(body_, plane);
     bridges_ = bridges(*body_.mesh, body_.elements, side_);
     for (const fe::Inlay& inlay : simulation.model.inlays)
-      inlays_.push_back(std::make_unique<Inner>(*body_.mesh, inlay, side_, simulation.model.settings.threads));
+      inlays_.push_back(std::make_unique<Inner>(model_, inlay, plane, side_));
+    loads_ = std::make_unique<const SectionLoads>(model_, plane, side_);
     if (pieces_.empty())
       refuse(*request.record, fmt::format("the plane through {} with the normal {} misses the body, which spans {}",
                                           place(*request.point), place(normal_), bounds(body_)));
@@ -273,9 +235,23 @@ class SectionWriter final : public TableWriter {
     Points arms = x.rowwise() - centroid.transpose();
     for (Eigen::Index n = 0; n < arms.rows(); ++n) arms.row(n) *= side_[static_cast<std::size_t>(n)];
     add_pull(*body_.mesh, bridges_, results, x, centroid, arms, sum);
-    for (const auto& inlay : inlays_) inlay->add(fields.positions() - body_.mesh->points, centroid, arms, sum);
-    const Vec3 &f = sum.force, &m = sum.moment;
+    for (const auto& inlay : inlays_) inlay->add(state, fields.positions() - body_.mesh->points, centroid, arms, sum);
+    const Pull loads = volume_loads(state, x, centroid);
+    const Vec3 f = sum.force - loads.force, m = sum.moment - loads.moment;
     return {{state.time, area, f[0], f[1], f[2], m[0], m[1], m[2]}};
+  }
+
+  /// What acts between the plane and the nodes.
+  Pull volume_loads(const fe::State& state, const Points& x, const Vec3& centre) const {
+    const std::vector<ActingStep> acting = acting_steps(model_, state);
+    Points per_mass = Points::Zero(x.rows(), 3);
+    for (const int n : loads_->points()) per_mass.row(n) = force_per_mass(model_, state, acting, n).transpose();
+    Pull sum;
+    loads_->add_masses([&](int n) -> Vec3 { return per_mass.row(n).transpose(); }, x, centre, sum);
+    for (const ActingStep& each : acting)
+      for (const fe::BodyForce& force : each.step->body_forces)
+        loads_->add_body_force(force, each.factor(force, state.time), state.time, x, centre, sum);
+    return sum;
   }
 
   /// Area of the deformed section and its centroid.
@@ -296,11 +272,13 @@ class SectionWriter final : public TableWriter {
     return {area, area > 0 ? Vec3(centroid / area) : Vec3(Vec3::Zero())};
   }
 
+  const fe::Model& model_;
   const Body& body_;
   Vec3 normal_;
   std::vector<Piece> pieces_;
   std::vector<double> side_;
   std::vector<Bridge> bridges_;
+  std::unique_ptr<const SectionLoads> loads_;
   std::vector<std::unique_ptr<const Inner>> inlays_;  // in their places: they hold what points at themselves
 };
 

@@ -55,6 +55,26 @@ TEST(SupportingMesh, CarriesItsPartOfTheForceOnASection) {
   EXPECT_NEAR(last[4], 10, 1e-7);  // Newton stops at 1e-8 of the loads
 }
 
+// Above z = 0.4 the body weighs 2 * 10 * 0.6, and of the inner mesh 0.35 * 0.6^2 of its volume 3 * 10 times that.
+TEST(SupportingMesh, WeighsOnASection) {
+  const Language language;
+  Mesh inner = box(3, 3, 3, 0.2);
+  inner.points.array() += 0.15;
+  Scene scene = supported(language, inner, 3000);
+  scene.constraints.pop_back();
+  scene.constraints.push_back(condition(language, "supportingMesh",
+                                        {{"youngModulus", 3000.0},
+                                         {"poissonRatio", 0.3},
+                                         {"massDensity", 3.0},
+                                         {"filename", std::make_shared<const Mesh>(inner)}}));
+  scene.steps = {language.tag("step", "step", {{"gravity", Numbers{0, 0, -10}}})};
+  scene.outputs = {
+      language.tag("section", "output",
+                   {{"id", std::string("s")}, {"point", Numbers{0.5, 0.5, 0.4}}, {"normal", Numbers{0, 0, 1}}})};
+  const Numbers last = csv_rows(written(language, scene, "s.csv")).back();
+  EXPECT_NEAR(last[4], 10 - 12 - 30 * 0.35 * 0.36, 1e-6);
+}
+
 TEST(SupportingMesh, LiesInsideTheBody) {
   const Language language;
   EXPECT_THAT(message(supported(language, box(3, 1, 1, 0.5), 3000), language),
