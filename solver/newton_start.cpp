@@ -128,9 +128,9 @@ Newton::Kept Newton::keep_volumes(Vector& u, Vector& v, Vector before, const Sup
     if (const auto i = static_cast<Eigen::Index>(k); supports.fixed[k]) jump[i] = v[i] - before[i];
   multiply(tangent_, before, rates);
   if (!v.isZero(0) && !std::isfinite(correct(rates, jump, before))) return {.done = false};
-  const auto share = [&](const Vector& before, const Vector& after) {
-    const double size = std::max(largest(numbering, before), largest(numbering, after));
-    return size > 0 ? largest(numbering, after - before) / size : 0;
+  const auto share = [&](const Vector& first, const Vector& last) {
+    const double size = std::max(largest(numbering, first), largest(numbering, last));
+    return size > 0 ? largest(numbering, last - first) / size : 0;
   };
   const Kept kept{.displacement = share(u, placed), .velocity = share(v, before)};
   u = placed;

@@ -230,7 +230,8 @@ TEST(IncompressibleStart, KeepsRigidMotionsAsTheyAre) {
   Model model = block();
   const Eigen::AngleAxisd turn(2, Vec3(1, 2, 3).normalized());
   model.initial_displacement = field(*model.mesh, [&](const Vec3& X) { return Vec3(turn * X - X + Vec3(1e4, 0, 0)); });
-  model.initial_velocity = field(*model.mesh, [&](const Vec3& X) { return Vec3(1, 2, 3).cross(turn * X) * 1e-3; });
+  model.initial_velocity =
+      field(*model.mesh, [&](const Vec3& X) { return Vec3(1e-3 * Vec3(1, 2, 3).cross(turn * X)); });
   const Outcome outcome = first(model);
   EXPECT_TRUE(outcome.notes.empty());
   EXPECT_LT(furthest(outcome.state.velocity, model.initial_velocity), 1e-10);
