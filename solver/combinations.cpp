@@ -135,10 +135,10 @@ void check_elements(const Model& model, CellKind kind, const Tell& tell) {
   check_cells(model.formulation, kind, tell);
   if (model.quadrature != 4 && (model.quadrature != 8 || kind != CellKind::tet10))
     tell(Error(fmt::format("quadrature = {} is not 4, or 8 for quadraticTet", model.quadrature)));
-  if (model.quadrature != 4 && model.formulation != Formulation::standard)
-    tell(Error(
-        fmt::format("quadrature = {} needs formulation = standard, but it is {}: take quadrature = 4 or leave it out",
-                    model.quadrature, spelled(model.formulation))));
+  if (model.quadrature != 4 && model.formulation != Formulation::standard && model.formulation != Formulation::mixed)
+    tell(Error(fmt::format(
+        "quadrature = {} needs formulation = standard or mixed, but it is {}: take quadrature = 4 or leave it out",
+        model.quadrature, spelled(model.formulation))));
   tell_of_number("thickness", model.thickness, false, tell);
   if (model.plane == Plane::stress && dimension(kind) != 2)
     tell(Error(fmt::format("plane = stress is for triangles, the elements are {}", name(kind))));

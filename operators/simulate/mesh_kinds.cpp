@@ -98,7 +98,8 @@ Factory<MeshChoice> kind_of_mesh(const KindOfMesh& facts) {
     tag.parameter<std::string>(
         "quadrature", {.fallback = "4",
                        .choices = {"4", "8"},
-                       .doc = "points: 4 integrate straight elements exactly, 8 also the stresses of curved ones"});
+                       .doc = "points: 4 integrate straight elements exactly, 8 also the stresses of curved ones; 8 of "
+                              "formulation standard and mixed"});
   Key<double> thickness;
   if (dimension(kind) == 2) {
     tag.parameter<std::string>("plane", {.fallback = "strain",

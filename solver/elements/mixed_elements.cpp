@@ -10,7 +10,7 @@
 namespace msml::fe {
 namespace {
 
-constexpr int body = MixedBatch::body, corners = MixedBatch::corners, nodes = MixedBatch::nodes;
+constexpr int body = MixedBatch<4>::body, corners = MixedBatch<4>::corners, nodes = MixedBatch<4>::nodes;
 
 /// Internal forces and the blocks of the tangent.
 struct Result {
@@ -21,7 +21,10 @@ struct Result {
   Lanes pressure[corners][corners];
 };
 
-std::size_t element_of(const MixedBatch& batch, int lane) { return static_cast<std::size_t>(batch.first + lane); }
+template <class Batch>
+std::size_t element_of(const Batch& batch, int lane) {
+  return static_cast<std::size_t>(batch.first + lane);
+}
 
 /// The ten nodes of each element and the additional nodes of its corners.
 std::vector<int> with_pressure_nodes(const Numbering& numbering) {
@@ -35,7 +38,8 @@ std::vector<int> with_pressure_nodes(const Numbering& numbering) {
   return list;
 }
 
-void scatter_force(const MixedBatch& batch, const Result& result, Vector& force) {
+template <class Batch>
+void scatter_force(const Batch& batch, const Result& result, Vector& force) {
   for (int lane = 0; lane < batch.count; ++lane) {
     for (int a = 0; a < body; ++a)
       for (int i = 0; i < 3; ++i) force[3 * batch.node[lane][a] + i] += result.force[a][i][lane];
@@ -43,7 +47,8 @@ void scatter_force(const MixedBatch& batch, const Result& result, Vector& force)
   }
 }
 
-void scatter_stiffness(const MixedBatch& batch, const Result& result, BlockMatrix& matrix) {
+template <class Batch>
+void scatter_stiffness(const Batch& batch, const Result& result, BlockMatrix& matrix) {
   for (int lane = 0; lane < batch.count; ++lane) {
     const auto at = [&](int a, int b) {
       return matrix.values.data() + 9 * static_cast<std::size_t>(batch.position[lane][a * nodes + b]);
@@ -73,21 +78,29 @@ void scatter_stiffness(const MixedBatch& batch, const Result& result, BlockMatri
 }  // namespace
 
 /// What a quadrature point sees.
-struct MixedElements::Values {
+template <int points>
+struct MixedElements<points>::Values {
   Lanes g[body][3];  ///< dN_a/dX
   Gradients H;
   Lanes p;
 };
 
-MixedElements::MixedElements(const Model& model)
+template <int points>
+Rule<3> MixedElements<points>::rule() {
+  if constexpr (points == 4) return four_point_rule();
+  return rule_of_size<3>(2);
+}
+
+template <int points>
+MixedElements<points>::MixedElements(const Model& model)
     : numbering_(number(model)),
       pressures_(model, numbering_),
       stored_energies_(model.stored_energies),
       densities_(model) {
-  const Rule<3> rule = four_point_rule();
-  for (std::size_t q = 0; q < rule.size(); ++q) {
-    reference_gradients_[q] = Tetrahedron<body>::gradients(rule[q].xi);
-    barycentric_[q] = Tetrahedron<body>::barycentric(rule[q].xi);
+  const Rule<3> quadrature = rule();
+  for (std::size_t q = 0; q < quadrature.size(); ++q) {
+    reference_gradients_[q] = Tetrahedron<body>::gradients(quadrature[q].xi);
+    barycentric_[q] = Tetrahedron<body>::barycentric(quadrature[q].xi);
   }
   for (const int node : numbering_.element_nodes) cells_.push_back(numbering_.node_of[static_cast<std::size_t>(node)]);
   const std::vector<int> element_nodes = with_pressure_nodes(numbering_);
@@ -96,11 +109,12 @@ MixedElements::MixedElements(const Model& model)
   set_scale(model);
 }
 
-void MixedElements::make_batches(const Model& model, const std::vector<int>& element_nodes) {
+template <int points>
+void MixedElements<points>::make_batches(const Model& model, const std::vector<int>& element_nodes) {
   const int all = static_cast<int>(numbering_.elements.size());
   std::vector<std::vector<int>> batch_nodes;
   for (int first = 0; first < all;) {
-    MixedBatch batch;
+    Batch batch;
     batch.first = first;
     batch.region = numbering_.region_of[static_cast<std::size_t>(first)];
     while (batch.count < lanes && first + batch.count < all &&
@@ -115,9 +129,10 @@ void MixedElements::make_batches(const Model& model, const std::vector<int>& ele
   colours_ = colour_chunks(batch_nodes, numbering_.nodes());
 }
 
-void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const {
-  const Rule<3> rule = four_point_rule();
-  std::vector<std::vector<Vec3>> places(rule.size());
+template <int points>
+void MixedElements<points>::fill(Batch& batch, const Model& model, const std::vector<int>& element_nodes) const {
+  const Rule<3> quadrature = rule();
+  std::vector<std::vector<Vec3>> places(quadrature.size());
   for (int lane = 0; lane < lanes; ++lane) {
     const int e = batch.first + std::min(lane, batch.count - 1);
     std::copy_n(element_nodes.begin() + nodes * e, nodes, batch.node[lane]);
@@ -125,26 +140,27 @@ void MixedElements::fill(MixedBatch& batch, const Model& model, const std::vecto
       for (int b = 0; b < nodes; ++b)
         batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
     const int* ids = cells_.data() + body * e;
-    for (std::size_t q = 0; q < rule.size(); ++q) {
-      if (lane < batch.count) places[q].push_back(place<3, body>(positions(), ids, rule[q].xi));
-      const Mat3 J = jacobian<3, body>(positions(), ids, rule[q].xi), inverse = J.inverse();
+    for (std::size_t q = 0; q < quadrature.size(); ++q) {
+      if (lane < batch.count) places[q].push_back(place<3, body>(positions(), ids, quadrature[q].xi));
+      const Mat3 J = jacobian<3, body>(positions(), ids, quadrature[q].xi), inverse = J.inverse();
       for (int k = 0; k < 9; ++k) batch.point[q].inverse.c[k][lane] = inverse(k / 3, k % 3);
-      batch.point[q].weight[lane] = lane < batch.count ? rule[q].weight * J.determinant() : 0.0;
+      batch.point[q].weight[lane] = lane < batch.count ? quadrature[q].weight * J.determinant() : 0.0;
     }
   }
   const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
   const std::span<const int> elements(numbering_.elements.data() + batch.first, static_cast<std::size_t>(batch.count));
   batch.law = BatchSplit(region, elements, places);
   if (!region.prony.g.empty())
-    batch.history = PronyHistory(series_of(region, elements, places), MixedBatch::points, region.law->small_strain());
+    batch.history = PronyHistory(series_of(region, elements, places), points, region.law->small_strain());
 }
 
 // A shear modulus over an element's size: pressures then have the size of displacements, and the constraint that of
 // forces.
-void MixedElements::set_scale(const Model& model) {
+template <int points>
+void MixedElements<points>::set_scale(const Model& model) {
   double volume = 0, modulus = 0;
-  for (const MixedBatch& batch : batches_)
-    for (const MixedBatch::Point& point : batch.point)
+  for (const Batch& batch : batches_)
+    for (const typename Batch::Point& point : batch.point)
       for (int lane = 0; lane < batch.count; ++lane) {
         volume += point.weight[lane];
         modulus += point.weight[lane] * model.regions[static_cast<std::size_t>(batch.region)].law->shear_modulus();
@@ -153,7 +169,8 @@ void MixedElements::set_scale(const Model& model) {
   numbering_.pressure_scale = modulus / volume / size;
 }
 
-MixedElements::Values MixedElements::values(const MixedBatch& batch, int q, const Vector& u) const {
+template <int points>
+typename MixedElements<points>::Values MixedElements<points>::values(const Batch& batch, int q, const Vector& u) const {
   const Tensor<Lanes>& inverse = batch.point[q].inverse;
   Values at{};
   for (int a = 0; a < body; ++a) {
@@ -170,9 +187,10 @@ MixedElements::Values MixedElements::values(const MixedBatch& batch, int q, cons
   return at;
 }
 
-Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Want want, Vector& force,
-                                   BlockMatrix* matrix) const {
-  constexpr int count = MixedBatch::points;
+template <int points>
+Assembled MixedElements<points>::add_batch(const Batch& batch, const Vector& u, Want want, Vector& force,
+                                           BlockMatrix* matrix) const {
+  constexpr int count = points;
   Values at[count];
   Gradients H[count];
   Response rest[count], volume[count];
@@ -223,29 +241,33 @@ Assembled MixedElements::add_batch(const MixedBatch& batch, const Vector& u, Wan
   return found;
 }
 
-Assembled MixedElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+template <int points>
+Assembled MixedElements<points>::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
   return add_by_colour(colours_, [&](std::size_t b) {
     if (matrix) fetch_blocks(batches_[b], *matrix);
     return add_batch(batches_[b], u, want, force, matrix);
   });
 }
 
-void MixedElements::begin_step(double dt) {
+template <int points>
+void MixedElements<points>::begin_step(double dt) {
   pressures_.begin_step(dt);
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     if (!batches_[b].history.empty()) batches_[b].history.begin_step(dt);
   });
 }
 
-void MixedElements::end_step(const Vector& u) {
+template <int points>
+void MixedElements<points>::end_step(const Vector& u) {
   pressures_.end_step(u);
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     if (!batches_[b].history.empty()) end_step(batches_[b], u);
   });
 }
 
-void MixedElements::end_step(MixedBatch& batch, const Vector& u) const {
-  constexpr int count = MixedBatch::points;
+template <int points>
+void MixedElements<points>::end_step(Batch& batch, const Vector& u) const {
+  constexpr int count = points;
   Gradients H[count];
   Response rest[count], volume[count];
   Lanes p[count], weights[count];
@@ -267,23 +289,27 @@ void MixedElements::end_step(MixedBatch& batch, const Vector& u) const {
   batch.stored_beside = fe::stored_beside(batch.history, rest, weights, batch.count);
 }
 
-double MixedElements::stored_beside() const {
+template <int points>
+double MixedElements<points>::stored_beside() const {
   double sum = 0;
-  for (const MixedBatch& batch : batches_) sum += batch.stored_beside;
+  for (const Batch& batch : batches_) sum += batch.stored_beside;
   return sum;
 }
 
-std::shared_ptr<const std::vector<double>> MixedElements::history_stress() const {
-  return history_stresses(batches_, numbering_.elements.size(), MixedBatch::points, element_of);
+template <int points>
+std::shared_ptr<const std::vector<double>> MixedElements<points>::history_stress() const {
+  return history_stresses(batches_, numbering_.elements.size(), points, element_of<Batch>);
 }
 
-std::shared_ptr<const std::vector<double>> MixedElements::history_energy() const {
+template <int points>
+std::shared_ptr<const std::vector<double>> MixedElements<points>::history_energy() const {
   if (!stored_energies_) return nullptr;
-  return history_energies(batches_, numbering_.elements.size(), MixedBatch::points, element_of);
+  return history_energies(batches_, numbering_.elements.size(), points, element_of<Batch>);
 }
 
-void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
-  for (const MixedBatch& batch : batches_)
+template <int points>
+void MixedElements<points>::add_mass(bool lumped, ScalarMatrix& mass) const {
+  for (const Batch& batch : batches_)
     for (int lane = 0; lane < batch.count; ++lane) {
       const int* ids = cells_.data() + body * (batch.first + lane);
       const int cell = numbering_.elements[static_cast<std::size_t>(batch.first + lane)];
@@ -294,25 +320,27 @@ void MixedElements::add_mass(bool lumped, ScalarMatrix& mass) const {
     }
 }
 
-std::size_t MixedElements::bytes() const {
+template <int points>
+std::size_t MixedElements<points>::bytes() const {
   std::size_t sum =
-      numbering_.bytes() + pressures_.bytes() + batches_.size() * sizeof(MixedBatch) + cells_.size() * sizeof(int);
-  for (const MixedBatch& batch : batches_) sum += batch.law.bytes() + batch.history.bytes();
+      numbering_.bytes() + pressures_.bytes() + batches_.size() * sizeof(Batch) + cells_.size() * sizeof(int);
+  for (const Batch& batch : batches_) sum += batch.law.bytes() + batch.history.bytes();
   return sum;
 }
 
-void MixedElements::visit_points(const Vector& u, const PointsVisitor& visit) const {
-  const Rule<3> rule = four_point_rule();
+template <int points>
+void MixedElements<points>::visit_points(const Vector& u, const PointsVisitor& visit) const {
+  const Rule<3> quadrature = rule();
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
-    const MixedBatch& batch = batches_[b];
+    const Batch& batch = batches_[b];
     ElementPoints found[lanes] = {};
-    for (int q = 0; q < MixedBatch::points; ++q) {
+    for (int q = 0; q < points; ++q) {
       const Values at = values(batch, q, u);
       for (int lane = 0; lane < batch.count; ++lane) {
         ElementPoints& out = found[lane];
         const int* ids = cells_.data() + body * (batch.first + lane);
         out.count = q + 1;
-        out.place[q] = place<3, body>(positions(), ids, rule[static_cast<std::size_t>(q)].xi);
+        out.place[q] = place<3, body>(positions(), ids, quadrature[static_cast<std::size_t>(q)].xi);
         out.weight[q] = batch.point[q].weight[lane];
         out.volume_stress[q] = at.p[lane];
         for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = at.H.c[k][lane];
@@ -321,5 +349,8 @@ void MixedElements::visit_points(const Vector& u, const PointsVisitor& visit) co
     for (int lane = 0; lane < batch.count; ++lane) visit(static_cast<std::size_t>(batch.first + lane), found[lane]);
   });
 }
+
+template class MixedElements<4>;
+template class MixedElements<8>;
 
 }  // namespace msml::fe

@@ -11,9 +11,11 @@
 
 namespace msml::fe {
 
-/// Eight elements of one region side by side. Unused lanes of the last batch repeat an element with weight 0.
+/// Eight elements of one region side by side, with that many quadrature points. Unused lanes of the last batch repeat
+/// an element with weight 0.
+template <int rule_points>
 struct MixedBatch {
-  static constexpr int body = 10, corners = 4, nodes = body + corners, points = 4;
+  static constexpr int body = 10, corners = 4, nodes = body + corners, points = rule_points;
   struct Point {
     Tensor<Lanes> inverse;  ///< dxi/dX
     Lanes weight;           ///< reference volume of the point
@@ -36,7 +38,9 @@ struct MixedBatch {
 /// With a history (see PronyHistory) p stays the pressure of the elastic law: all of S_e = d(rest + p g)/dE relaxes, so
 /// that the elements agree with the standard ones where the law is compressible. Stationary is then, with the factor of
 /// the step, int factor (rest + p g - p^2/(2 k)) + Q : E, which is symmetric too. What acts of the pressure is the
-/// convolution of p, see Elements::acting.
+/// convolution of p, see Elements::acting. Four points integrate straight elements (degree 2), eight also the forces of
+/// curved ones at a constant stress (degree 3).
+template <int points>
 class MixedElements final : public Elements {
  public:
   explicit MixedElements(const Model& model);
@@ -54,14 +58,16 @@ class MixedElements final : public Elements {
   const PatternPtr& pattern() const override { return pattern_; }
 
  private:
+  using Batch = MixedBatch<points>;
   const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   struct Values;
+  static Rule<3> rule();
   void make_batches(const Model& model, const std::vector<int>& element_nodes);
-  void fill(MixedBatch& batch, const Model& model, const std::vector<int>& element_nodes) const;
+  void fill(Batch& batch, const Model& model, const std::vector<int>& element_nodes) const;
   void set_scale(const Model& model);
-  Values values(const MixedBatch& batch, int q, const Vector& u) const;
-  void end_step(MixedBatch& batch, const Vector& u) const;
-  Assembled add_batch(const MixedBatch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
+  Values values(const Batch& batch, int q, const Vector& u) const;
+  void end_step(Batch& batch, const Vector& u) const;
+  Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
 
   Numbering numbering_;
   PressureHistory pressures_;
@@ -69,10 +75,10 @@ class MixedElements final : public Elements {
   PatternPtr pattern_;
   std::vector<int> cells_;  ///< mesh points of the ten nodes of each element of numbering()
   Densities densities_;
-  std::vector<MixedBatch> batches_;
+  std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
-  std::array<std::array<std::array<double, 3>, MixedBatch::body>, MixedBatch::points> reference_gradients_;
-  std::array<std::array<double, MixedBatch::corners>, MixedBatch::points> barycentric_;
+  std::array<std::array<std::array<double, 3>, Batch::body>, points> reference_gradients_;
+  std::array<std::array<double, Batch::corners>, points> barycentric_;
 };
 
 }  // namespace msml::fe

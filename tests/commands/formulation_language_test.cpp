@@ -47,7 +47,7 @@ TEST(FormulationLanguage, DirectionsMayNameAFieldThatTheMeshWillHave) {
 
 TEST(FormulationLanguage, QuadratureOfEightPointsIsForStandardElements) {
   EXPECT_THAT(faults(R"(<quadraticTet mesh="${b}" formulation="singleRotation" quadrature="8"/>)", elastic),
-              HasSubstr("s.xml:2: quadrature = 8 needs formulation = standard, but it is singleRotation"));
+              HasSubstr("s.xml:2: quadrature = 8 needs formulation = standard or mixed, but it is singleRotation"));
 }
 
 TEST(FormulationLanguage, ASingleRotationIsForCorotatedElasticity) {

@@ -34,7 +34,8 @@ std::vector<Kind> kinds() {
           {"quadraticTet", CellKind::tet10, {}},
           {"quadraticTet", CellKind::tet10, {{"quadrature", std::string("8")}}},
           {"quadraticTet", CellKind::tet10, said("singleRotation")},
-          {"quadraticTet", CellKind::tet10, said("mixed")}};
+          {"quadraticTet", CellKind::tet10, said("mixed")},
+          {"quadraticTet", CellKind::tet10, {{"formulation", std::string("mixed")}, {"quadrature", std::string("8")}}}};
 }
 
 std::string called(const Kind& kind) {

@@ -188,6 +188,27 @@ TEST(Tet10, PassesThePatchTestWhereCurvedWithEightPoints) {
   EXPECT_EQ(outcome.stop, Stop::converged);
 }
 
+// Of mixed elements too; four points miss it.
+TEST(MixedTet10, PassesThePatchTestWhereCurvedWithEightPoints) {
+  for (const int points : {4, 8}) {
+    Model model = split_model(Formulation::mixed, make_linear_elastic({.strain = Strain::small}));
+    Mesh mesh = *model.mesh;
+    Random random;
+    for (int n = 0; n < mesh.point_count(); ++n)
+      if (!on_boundary(mesh.points.row(n).transpose(), CellKind::tet10))
+        for (int d = 0; d < 3; ++d) mesh.points(n, d) += 0.01 * random.number();
+    model.mesh = std::make_shared<const Mesh>(std::move(mesh));
+    model.quadrature = points;
+    Outcome outcome;
+    const double error = patch_error(model, 1e-3 * Mat3::Ones(), outcome) / 1e-3;
+    EXPECT_EQ(outcome.stop, Stop::converged);
+    if (points == 8)
+      EXPECT_LT(error, 1e-10);
+    else
+      EXPECT_GT(error, 1e-6);
+  }
+}
+
 TEST(EveryElement, HasNoStressUnderARigidMotion) {
   const Mat3 R = Eigen::AngleAxisd(2.5, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
