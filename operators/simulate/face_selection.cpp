@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "operators/simulate/records.hpp"
 #include "operators/simulate/selection.hpp"
@@ -19,7 +20,34 @@ const char* side_noun(const Body& body) {
   return nouns[dimension(body.kind)];
 }
 
-/// Matches triangles with faces of a body, by node ids first where they index the body's points, then by place.
+/// The four triangles through the mid nodes of each boundary face of quadratic tetrahedra, by their nodes.
+class Quarters {
+ public:
+  Quarters(const Body& body, const FaceTable& table) {
+    for (const fe::Face& face : table.boundary_faces()) {
+      const auto nodes = face_nodes(*body.mesh, face);
+      if (nodes.size() != 6) continue;
+      for (std::size_t i = 0; i < 3; ++i) add({nodes[i], nodes[3 + i], nodes[3 + (i + 2) % 3]}, face);
+      add({nodes[3], nodes[4], nodes[5]}, face);
+    }
+  }
+  /// Element -1 if there is none.
+  fe::Face find(SideCorners nodes) const {
+    std::sort(nodes.begin(), nodes.end());
+    const auto found = faces_.find(nodes);
+    return found == faces_.end() ? fe::Face{} : found->second;
+  }
+
+ private:
+  void add(SideCorners nodes, const fe::Face& face) {
+    std::sort(nodes.begin(), nodes.end());
+    faces_[nodes] = face;
+  }
+  std::map<SideCorners, fe::Face> faces_;
+};
+
+/// Matches triangles with faces of a body, by node ids first where they index the body's points, then by place. Four
+/// triangles through the mid nodes make a face.
 class Matcher {
  public:
   Matcher(const Record& record, const Body& body, const Mesh& triangles, bool shares_points)
@@ -28,21 +56,30 @@ class Matcher {
   std::vector<fe::Face> match(const std::vector<int>& cells) {
     std::vector<fe::Face> faces;
     for (const int cell : cells) {
-      const fe::Face face = match(cell);
+      bool quarter = false;
+      const fe::Face face = match(cell, quarter);
       if (face.element < 0) continue;
+      if (quarter) {
+        parts_[{face.element, face.local}].insert(cell);
+        if (parts_[{face.element, face.local}].size() < 4) continue;
+      }
       const auto [earlier, fresh] = taken_.try_emplace({face.element, face.local}, cell);
       if (!fresh)
         refuse(record_, fmt::format("cells {} and {} in indices are the same face of the body, at {}", earlier->second,
                                     cell, place(centroid(triangles_, cell))));
       faces.push_back(face);
     }
+    for (const auto& [face, quarters] : parts_)
+      if (quarters.size() < 4) partial_.insert(partial_.end(), quarters.begin(), quarters.end());
+    report(partial_, static_cast<int>(cells.size()),
+           "are parts of faces with mid nodes of which not all four are named");
     report(inside_, static_cast<int>(cells.size()), "lie between two elements, not on the boundary");
     report(unmatched_, static_cast<int>(cells.size()), "match no face of an element");
     return faces;
   }
 
  private:
-  fe::Face match(int cell) {
+  fe::Face match(int cell, bool& quarter) {
     const int* nodes = triangles_.cell(cell);
     const auto count = static_cast<std::size_t>(dimension(body_.kind));
     SideCorners corners{-1, -1, -1};
@@ -61,6 +98,12 @@ class Matcher {
           if (const fe::Face face = table_.boundary({a, b, c}); face.element >= 0) return face;
           between = between || table_.inside({a, b, c});
         }
+    if (!quarters_) quarters_.emplace(body_, table_);
+    quarter = true;
+    for (const int a : candidates[0])
+      for (const int b : candidates[1])
+        for (const int c : candidates[2])
+          if (const fe::Face face = quarters_->find({a, b, c}); face.element >= 0) return face;
     (between ? inside_ : unmatched_).push_back(cell);
     return {};
   }
@@ -78,8 +121,10 @@ class Matcher {
   bool shares_points_;
   FaceTable table_;
   std::optional<PlaceTable> places_;
-  std::vector<int> inside_, unmatched_;
-  std::map<std::pair<int, int>, int> taken_;  ///< face -> the cell that named it
+  std::optional<Quarters> quarters_;
+  std::vector<int> inside_, unmatched_, partial_;
+  std::map<std::pair<int, int>, std::set<int>> parts_;  ///< face -> the cells that are quarters of it
+  std::map<std::pair<int, int>, int> taken_;            ///< face -> the cell that named it
 };
 
 void check_sides(const Record& record, const IndexSet& set, const Mesh& mesh, const Body& body) {

@@ -324,7 +324,9 @@ TEST(PronyElements, AStretchedBlockRelaxes) {
                                                            {"incompressible", true}});
     const auto forces = pulled(model, 1.5);
     ASSERT_EQ(forces.size(), 12u) << way.name;
-    if (way.formulation == Formulation::mixed) EXPECT_NEAR(forces[1], 1.5 - 1 / 2.25, 1e-7);
+    if (way.formulation == Formulation::mixed) {
+      EXPECT_NEAR(forces[1], 1.5 - 1 / 2.25, 1e-7);
+    }
     EXPECT_NEAR(forces[2] / forces[1], .79133132, 1e-7) << way.name;
     EXPECT_NEAR(forces[11] / forces[1], .57358951, 1e-7) << way.name;
   }

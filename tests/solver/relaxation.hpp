@@ -41,7 +41,9 @@ inline void expect_relaxation(Elements& elements, const Vector& u, const std::st
     elements.begin_step(steps[k]);
     const Vector force = force_at(elements, u);
     elements.end_step(u);
-    if (wanted[k] > 0) EXPECT_LT((force - wanted[k] * instant).norm(), 6e-9 * instant.norm()) << label;
+    if (wanted[k] > 0) {
+      EXPECT_LT((force - wanted[k] * instant).norm(), 6e-9 * instant.norm()) << label;
+    }
   }
 }
 

@@ -15,7 +15,10 @@ std::string no_pulse(const Value&) {
 ConditionFactory surface_pressure_on_mesh() {
   ConditionFactory tag("surfacePressureOnMesh", "constraint",
                        "Pressure on the boundary faces that lie on triangles of a separate surface mesh.");
-  const auto mesh = tag.input<Mesh>("mesh", "the surface: its triangles are matched with the faces by place");
+  const auto mesh =
+      tag.input<Mesh>("mesh",
+                      "the surface: its triangles are matched with the faces by place; of quadratic elements the "
+                      "four triangles through mid nodes, as ExtractSurfaceMesh makes them, are one face");
   add_common(tag, "triangle cells of that surface, or its nodes", Indexed::faces);
   const auto pressure = tag.parameter<Formulas>(
       "pressure", {.unit = "stress",
