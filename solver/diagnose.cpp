@@ -111,7 +111,29 @@ std::string node_text(const Run& run, const IncrementResult& result) {
   return fmt::format("; largest residual at node {} at ({:g} {:g} {:g})", result.worst_node, x[0], x[1], x[2]);
 }
 
+constexpr double flat = 1e-9;  // det F = 0 comes with either sign
+
 }  // namespace
+
+void Run::judge_end() {
+  const Settings& settings = model.settings;
+  if (!is_dynamic(settings.integrator) || outcome.stop != Stop::converged || equations.small_strain()) return;
+  IncrementResult end;
+  end.worst_element = newton.forces().found.smallest_J_element;
+  end.stop = Stop::inverted_element;
+  end.worst_J = newton.forces().found.smallest_J;
+  if (end.worst_element >= 0 && end.worst_J <= flat && !settings.allow_inverted) {
+    outcome.stop = end.stop;
+    outcome.diagnosis = fmt::format(
+        "step {} '{}' ended at time {:g} in a state that is none of a body: {}{}; {}. A motion may pass through such "
+        "states, but not end in one: allowInverted=\"true\" takes it",
+        now.step + 1, model.steps[static_cast<std::size_t>(now.step)].name, now.time, name(end.stop),
+        element_text(*this, end), advice(*this, end));
+  } else if (last_inverted) {
+    outcome.notes.push_back(fmt::format("elements were inside out on the way, from time {:.4g} to {:.4g}",
+                                        *first_inverted, *last_inverted));
+  }
+}
 
 void explain(Run& run, const IncrementResult& result, double share, const std::string& evidence) {
   const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];

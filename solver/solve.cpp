@@ -91,6 +91,7 @@ Outcome run_model(const Model& model, const Observer& observer) {
   outcome.state = run.state();
   note_memory(run, outcome);
   outcome.check = check_answer(run);
+  run.judge_end();
   for (const std::string& warning :
        {warning_of_imbalance(model, outcome), warning_of_other_rest(run, outcome.check), warning_of_energy_gain(run)})
     if (!warning.empty()) outcome.warnings.push_back(warning);

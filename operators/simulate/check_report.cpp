@@ -127,7 +127,9 @@ std::string check_text(const Simulation& simulation, const fe::Outcome& outcome,
   const fe::Check& check = outcome.check;
   const bool balanced = outcome.stop == fe::Stop::converged || outcome.stop == fe::Stop::interrupted;
   std::string text = fmt::format("check of '{}' at t = {:.6g}", simulation.name, outcome.state.time);
-  text += balanced ? "\n" : fmt::format(", the last good state (stopped: {})\n", fe::name(outcome.stop));
+  const bool inverted = outcome.stop == fe::Stop::inverted_element && check.smallest_J <= 0;
+  text += balanced ? "\n"
+                   : fmt::format(", the last {}state (stopped: {})\n", inverted ? "" : "good ", fe::name(outcome.stop));
   if (balanced) text += balance_text(check, fe::is_dynamic(simulation.model.settings.integrator));
   text += line("mass", fmt::format("{:.6g}", check.mass));
   if (!simulation.model.regions.empty()) text += shape_text(simulation, check, worst);

@@ -44,13 +44,12 @@ std::vector<std::string> check_warnings(const Simulation& simulation, const fe::
                     "strain = \"corotated\"",
                     check.largest_rotation, small_rotation));
   if (check.smallest_J < near_inversion)
-    warnings.push_back(
-        fmt::format("element {} at {} is near inversion: J = {:.3g}, below {}. Lower the load, or refine "
-                    "the mesh there",
-                    check.smallest_J_element,
-                    check.smallest_J_element < 0 ? std::string("an unknown place")
-                                                 : place(centroid(*simulation.body.mesh, check.smallest_J_element)),
-                    check.smallest_J, near_inversion));
+    warnings.push_back(fmt::format(
+        "element {} at {} is {}. Lower the load, or refine the mesh there", check.smallest_J_element,
+        check.smallest_J_element < 0 ? std::string("an unknown place")
+                                     : place(centroid(*simulation.body.mesh, check.smallest_J_element)),
+        check.smallest_J <= 0 ? fmt::format("inverted: J = {:.3g}", check.smallest_J)
+                              : fmt::format("near inversion: J = {:.3g}, below {}", check.smallest_J, near_inversion)));
   if (check.damped_per_cycle > tolerable_damping)
     warnings.push_back(
         fmt::format("the time step damps the lowest period, {:.3g}, by {:.3g} % a cycle. Take {}dt below "

@@ -88,11 +88,12 @@ TableWriter::TableWriter(const OutputRequest& request, const std::filesystem::pa
 void TableWriter::write(const fe::State& state, StateFields& fields) {
   for (const std::vector<double>& row : rows(state, fields)) file_.add(row);
   last_ = state.increment;
+  last_time_ = state.time;
   file_.save(false);
 }
 
 void TableWriter::finish(const fe::State& last, StateFields& fields) {
-  if (last_ != last.increment) write(last, fields);
+  if (last_ != last.increment || last_time_ != last.time) write(last, fields);
   file_.save(true);
 }
 

@@ -65,6 +65,7 @@ class TableWriter : public OutputWriter {
 
  private:
   int every_, last_ = -1;
+  double last_time_ = 0;  ///< the state that ends a run may lie between two increments
   CsvFile file_;
 };
 

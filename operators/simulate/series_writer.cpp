@@ -79,7 +79,7 @@ void SeriesWriter::write(const fe::State& state, StateFields& fields) {
 }
 
 void SeriesWriter::finish(const fe::State& last, StateFields& fields) {
-  if (last_increment_ != last.increment) write(last, fields);
+  if (last_increment_ != last.increment || times_.back() != last.time) write(last, fields);
   write_collection();
   remove_older_states();
 }

@@ -36,7 +36,7 @@ class SeriesWriter final : public OutputWriter {
   std::shared_ptr<Mesh> last_;  ///< the state written last; before that its cells and regions
   std::vector<double> times_;
   std::vector<std::filesystem::path> files_;
-  int last_increment_ = -1;
+  int last_increment_ = -1;  ///< of the state written last; one that ends a run may lie between two of them
   std::chrono::steady_clock::time_point collected_{};
 };
 

@@ -141,8 +141,12 @@ void describe_steps(Factory<SettingsBuilder>& tag, Keys& keys) {
   keys.largest_displacement = tag.parameter(
       "largestDisplacement",
       {.unit = "length", .range = positive(), .optional = true, .doc = "of arcLength: of a node, where it ends"});
-  keys.allow_inverted =
-      tag.parameter<bool>("allowInverted", {.fallback = false, .doc = "go on where elements turn inside out"});
+  keys.allow_inverted = tag.parameter<bool>(
+      "allowInverted",
+      {.fallback = false,
+       .doc =
+           "take states in which elements are inside out: where laws have forces there, dynamics passes through such "
+           "states in any case, but a run that ends in one has failed"});
   keys.untangle = tag.parameter<bool>(
       "untangle", {.fallback = usual.untangle,
                    .doc = "where elements start inside out or crushed, find the way with the stable neo-Hookean law; "

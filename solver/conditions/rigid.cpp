@@ -121,6 +121,64 @@ void hold(const Model& model, const Step& step, const std::vector<int>& part_of,
       }
 }
 
+using Motion6 = Eigen::Matrix<double, 6, 1>;  ///< translation, and rotation times the radius of the part
+
+/// What loads do along the free motions of a part: the force, and the moment about its centre over its radius. Zero
+/// where they balance.
+Motion6 push_on(const Mesh& mesh, const Numbering& numbering, const std::vector<int>& part_of, int id, const Part& part,
+                const Vector& loads, Gram& free) {
+  Motion6 work = Motion6::Zero();
+  for (int n = 0; n < numbering.body_nodes(); ++n) {
+    const int point = numbering.node_of[static_cast<std::size_t>(n)];
+    if (part_of[static_cast<std::size_t>(point)] != id) continue;
+    const Vec3 force = loads.segment<3>(3 * n);
+    work.head<3>() += force;
+    work.tail<3>() += arm_of(mesh, point, part).cross(force);
+  }
+  const Eigen::SelfAdjointEigenSolver<Gram> solver(part.held);
+  const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
+  free = Gram::Zero();
+  for (int k = 0; k < 6; ++k)
+    if (solver.eigenvalues()[k] < 1e-12 * largest)
+      free += solver.eigenvectors().col(k) * solver.eigenvectors().col(k).transpose();
+  return free * work;
+}
+
+std::string direction_text(const Vec3& d) {
+  const char* const names[] = {"x", "y", "z"};
+  for (int c = 0; c < 3; ++c)
+    if (std::abs(d[c]) > (1 - 1e-9) * d.norm()) return (d[c] < 0 ? "-" : "") + std::string(names[c]);
+  const Vec3 n = d.normalized();
+  return fmt::format("({:.3g} {:.3g} {:.3g})", n[0], n[1], n[2]);
+}
+
+std::string place_text(Vec3 x, double size) {
+  for (int c = 0; c < 3; ++c)
+    if (std::abs(x[c]) < 1e-12 * size) x[c] = 0;
+  return fmt::format("({:g} {:g} {:g})", x[0], x[1], x[2]);
+}
+
+/// In words, such as "along x with a force of 5"; a push has a part of each of the free motions.
+std::string push_text(const Motion6& push, const Gram& free, const Part& part) {
+  constexpr double small = 1e-6;  // of the whole push
+  const Vec3 shift = push.head<3>(), turn = push.tail<3>();
+  const bool shifts = shift.norm() > small * push.norm(), turns = turn.norm() > small * push.norm();
+  Motion6 shift_alone = Motion6::Zero();
+  shift_alone.head<3>() = shift;
+  if (turns && (free * shift_alone - shift_alone).norm() > small * push.norm()) {
+    // A rotation that supports guide: its axis is where it moves nothing.
+    const Vec3 axis = part.centre + part.radius * turn.cross(shift) / turn.squaredNorm();
+    return fmt::format("round {} through {} with a moment of {:.4g}", direction_text(turn),
+                       place_text(axis, part.radius), part.radius * push.squaredNorm() / turn.norm());
+  }
+  std::string text;
+  if (shifts) text = fmt::format("along {} with a force of {:.4g}", direction_text(shift), shift.norm());
+  if (turns)
+    text += fmt::format("{}round {} through its centre with a moment of {:.4g}", shifts ? ", and " : "",
+                        direction_text(turn), part.radius * turn.norm());
+  return text;
+}
+
 }  // namespace
 
 FreeMotions free_motions(const Model& model, const Step& step, const Numbering& numbering, const Mask& fixed) {
@@ -186,6 +244,29 @@ void remove_free_motions(const FreeMotions& free, bool small_strain, double load
       u.segment<3>(3 * n) = x - X.segment<3>(3 * n);
     }
   }
+}
+
+void refuse_unbalanced(const Model& model, const Step& step, const Numbering& numbering, const Vector& loads) {
+  if (is_scalar(model)) return check_held(model, step);
+  const Mesh& mesh = *model.mesh;
+  const std::vector<int> part_of = connected_parts(model);
+  std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
+  hold(model, step, part_of, parts);
+  const Part* pushed = nullptr;
+  Motion6 push = Motion6::Zero();
+  Gram free = Gram::Zero(), each;
+  for (std::size_t id = 0; id < parts.size(); ++id) {
+    if (parts[id].points == 0 || rank(parts[id].all) == rank(parts[id].held)) continue;
+    const Motion6 found = push_on(mesh, numbering, part_of, static_cast<int>(id), parts[id], loads, each);
+    if (found.norm() > push.norm()) pushed = &parts[id], push = found, free = each;
+  }
+  if (!pushed) return check_held(model, step);
+  const long motions = rank(pushed->all) - rank(pushed->absent), unheld = rank(pushed->all) - rank(pushed->held);
+  throw Error(fmt::format(
+      "step '{}' is static, but {} of the {} rigid motions of the part of {} nodes around {} {} free, and its loads do "
+      "not balance: they push it {}. Balance them, hold it, or choose a dynamic timeIntegration",
+      step.name, unheld, motions, pushed->points, place_text(pushed->centre, pushed->radius),
+      unheld == 1 ? "is" : "are", push_text(push, free, *pushed)));
 }
 
 void check_held(const Model& model, const Step& step) {

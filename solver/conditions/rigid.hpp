@@ -10,6 +10,10 @@ namespace msml::fe {
 /// the part and the number of free motions. A part is connected through shared nodes.
 void check_held(const Model& model, const Step& step);
 
+/// The same where loads (3 per numbered node) push along motions that nothing holds: names the part that is pushed most
+/// beside its loads, the force and the moment about its centre that are left over along these motions.
+void refuse_unbalanced(const Model& model, const Step& step, const Numbering& numbering, const Vector& loads);
+
 /// Rigid motions that nothing holds.
 struct FreeMotions {
   std::vector<Vector> modes;            ///< orthonormal, in solver numbering; of small rotations

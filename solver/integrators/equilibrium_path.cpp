@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "solver/integrators/stepper.hpp"
 
 namespace msml::fe {
 namespace {
+
+constexpr int most_singular = 2;  // adaptive pieces in a row: shorter ones may not meet what the way of a long one met
 
 IncrementResult try_piece(Run& run, const EquilibriumPath& path, double from, double share, bool last_resort) {
   Increment increment{
@@ -73,7 +76,6 @@ double growth(const IncrementResult& result, bool adaptive) {
 /// Why a piece failed that could not be halved any more; "" if that is not found.
 std::string cause_of(Run& run, const EquilibriumPath& path, double from, double share, IncrementResult& result) {
   if (result.stop != Stop::newton_limit && result.stop != Stop::diverged) return "";
-  run.now.load_factor = from;
   const double fails = run.model.settings.newton_iterations > 1 ? approach(run, path, from, share) : share;
   if (std::string found = find_cause(run, path, fails, result); !found.empty()) return found;
   if (fails < share) return cause_of_iterations(run, result);
@@ -90,13 +92,13 @@ EquilibriumPath begin_path(Run& run, int step) {
 }
 
 bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
-  const Motion before = run.now;
   const bool adaptive = run.model.settings.adaptive_step;
   const Step& step = run.model.steps[static_cast<std::size_t>(run.now.step)];
   const double smallest = (to - from) / (adaptive ? 4096 : 64);
   const double longest = adaptive ? longest_piece(run, path, to - from, smallest) : to - from;
   double piece = longest;
   if (adaptive && run.piece > 0) piece = std::clamp(run.piece / path.duration, smallest, piece);
+  int singular = 0;
   while (from < to) {
     const double kink = adaptive ? path.share(next_stop(step, path.time(from), path.time(to))) : to;
     const double stop =
@@ -107,15 +109,22 @@ bool advance(Run& run, const EquilibriumPath& path, double from, double to) {
     if (result.stop == Stop::converged) {
       take(run, path, share, result.u);
       from = share;
+      singular = 0;
       piece = std::min(longest, piece * growth(result, adaptive));
       if (adaptive) run.piece = piece * path.duration;
       continue;
     }
     run.newton.forget();
-    const bool hopeless = result.stop == Stop::singular || result.stop == Stop::out_of_memory;
+    singular = result.stop == Stop::singular ? singular + 1 : 0;
+    const bool hopeless = result.stop == Stop::out_of_memory || singular > (adaptive ? most_singular : 0);
     if (hopeless || run.model.settings.newton_iterations == 1 || last_resort) {
+      const Motion accepted = run.now;
+      run.now.load_factor = from;
       const std::string evidence = cause_of(run, path, from, share, result);
-      run.now = before;
+      const auto [found, furthest] = std::pair(run.now.u, run.now.load_factor);
+      run.now = accepted;
+      if (furthest > from)
+        run.equations.begin_step((furthest - from) * path.duration), take(run, path, furthest, found);
       explain(run, result, share, evidence);
       return false;
     }

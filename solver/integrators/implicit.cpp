@@ -246,7 +246,7 @@ bool advance(Stage& stage, double target) {
     const double order = settings.integrator == Integrator::implicit_euler ? 2 : 3;
     const double error = solved && settings.adaptive_step ? error_of(stage, trial, taken) : 0;
     const double factor = solved ? std::clamp(0.9 * std::pow(std::max(error, 1e-6), -1 / order), 0.2, 2.0) : 0.5;
-    const bool hopeless = trial.result.stop == Stop::singular || trial.result.stop == Stop::out_of_memory;
+    const bool hopeless = trial.result.stop == Stop::out_of_memory;  // a singular matrix is not, as M/dt^2 grows
     if (!solved && (!settings.adaptive_step || hopeless || taken / 2 < smallest)) {
       const std::string evidence = find_cause(stage, start_forces, damped, trial.result);
       return explain(run, trial.result, -1, evidence), false;

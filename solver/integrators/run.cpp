@@ -90,9 +90,9 @@ void Run::check_balanced(const ScaledLoads& loads) const {
   const double size = forces.external.norm();
   for (const Vector& mode : free.modes)
     if (std::abs(dot(mode, forces.external)) > 1e-8 * size) {
-      check_held(model, model.steps[static_cast<std::size_t>(now.step)]);
-      throw Error(fmt::format("the loads of step '{}' push the body along a motion that nothing holds",
-                              model.steps[static_cast<std::size_t>(now.step)].name));
+      const Step& step = model.steps[static_cast<std::size_t>(now.step)];
+      refuse_unbalanced(model, step, equations.numbering(), forces.external);
+      throw Error(fmt::format("the loads of step '{}' push the body along a motion that nothing holds", step.name));
     }
 }
 
@@ -117,6 +117,7 @@ void Run::mark() {
   damping_before = forces.damping;
   if (equations.has_history()) internal_before = forces.internal;
   tangled = forces.found.smallest_J < 0.1;
+  if (forces.found.smallest_J <= 0) last_inverted = now.time, first_inverted = first_inverted.value_or(now.time);
   measure_energies();
   const Energies& e = now.energies;
   const double held = e.elastic + e.kinetic;

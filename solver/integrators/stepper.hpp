@@ -40,6 +40,7 @@ struct Run {
   double most_gained = 0, most_lost = 0;       ///< energy beside that at the start, work and dissipation, at any mark
   double most_energy = 0;                      ///< largest of all of these
   bool tangled = false;  ///< at the last mark an element had less than a tenth of its volume, or was inside out
+  std::optional<double> first_inverted = {}, last_inverted = {};  ///< times of marks with elements inside out
   std::unique_ptr<Untangler> untangler = {};
   int halved = 0;     ///< pieces of load or time that failed and were halved
   int unsettled = 0;  ///< time steps whose damping forces the end of the step would change by a thousandth of all
@@ -71,6 +72,9 @@ struct Run {
   IncrementResult reach(const Increment& increment);
   /// Passes the present state on; false if the observer wants to stop. Sets Outcome::stop then.
   bool accept();
+  /// Dynamics: the run has failed, and is explained, if its last state is one with inverted elements whose laws have
+  /// forces there; through such states it may pass. Settings::allow_inverted takes them all.
+  void judge_end();
   /// Reactions that balance a residual.
   void set_reactions(const Vector& residual, const Supports& supports);
   /// Work and loss from u_before to the present state by the trapezoidal rule, with the forces at the last mark and
@@ -98,7 +102,7 @@ EquilibriumPath begin_path(Run& run, int step);
 
 /// Goes along a path from one share to another, in halved pieces where Newton's method fails; at most 2^6 pieces, 2^12
 /// with adaptive_step, where the length of the next piece also follows the number of iterations.
-/// False if that fails: the outcome is explained then, and the present state is the one before.
+/// False if that fails: the outcome is explained then, and the present state is the last equilibrium that was found.
 bool advance(Run& run, const EquilibriumPath& path, double from, double to);
 
 /// Load steps to equilibrium; see static.cpp.

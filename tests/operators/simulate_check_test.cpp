@@ -72,6 +72,16 @@ TEST(CheckWarnings, AnElementNearInversion) {
                   "refine the mesh there"));
 }
 
+TEST(CheckWarnings, AnInvertedElement) {
+  auto outcome = harmless();
+  outcome.check.smallest_J = -2.17;
+  outcome.check.smallest_J_element = 0;
+  const simulation::WorstShape good{.smallest_angle = 40, .angle_element = 0};
+  EXPECT_THAT(check_warnings(simulation_of(0.3), outcome, good),
+              ElementsAre("element 0 at (0.375, 0.25, 0.125) is inverted: J = -2.17. Lower the load, or refine the "
+                          "mesh there"));
+}
+
 TEST(CheckWarnings, ATimeStepThatDampsTheLowestPeriod) {
   auto outcome = harmless();
   outcome.check.damped_per_cycle = 0.3;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cube from record to results on disk, against closed forms.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,6 +20,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
 
 /// Rollers on three sides and a traction of 10 along z on top: E = 1000, nu = 0.3.
 Scene pulled_cube(const Language& language) {
@@ -175,6 +177,28 @@ TEST(Simulate, TheCheckIsPrintedAndRecorded) {
               HasSubstr(R"("unknowns": 54)"));  // 27 points, 9 of them held on each side
 }
 
+// Squeezed to less than nothing in one increment: pieces of it are found, and the last of them is on disk.
+TEST(Simulate, TheLastGoodStateIsWrittenAlsoBetweenReportedOnes) {
+  const Language language;
+  const Folder folder;
+  Scene scene = pulled_cube(language);
+  scene.solver["adaptiveStep"] = true;
+  scene.constraints.push_back(
+      condition(language, "displacementConstraint",
+                {{"indices", points_at(scene.mesh, 2, 1)}, {"displacement", std::vector<double>{0, 0, -1.5}}}));
+  scene.outputs.push_back(language.tag("energies", "output", {{"id", std::string("e")}}));
+  Ran ran;
+  const Record record = scene.record(language);
+  Context context(record, ran.listener, folder.path(), 1);
+  EXPECT_THROW(operators::simulate()(context), Error);
+  EXPECT_THAT(folder.files(), IsSupersetOf({"pulled_0000.vtu", "pulled_0001.vtu"}));
+  const std::vector<std::vector<double>> rows = csv_rows(folder.text("e.csv"));
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_GT(rows[1].back(), 0.5);  // of the loads
+  EXPECT_LT(rows[1].back(), 1);
+  EXPECT_THAT(folder.text("pulled.pvd"), HasSubstr(fmt::format("timestep=\"{:.17g}\"", rows[1][0])));
+}
+
 TEST(Simulate, ARunThatDoesNotConvergeKeepsItsLastGoodState) {
   const Language language;
   const Folder folder;
@@ -195,8 +219,9 @@ TEST(Simulate, ARunThatDoesNotConvergeKeepsItsLastGoodState) {
     EXPECT_EQ(error.where().line, 7);
     EXPECT_THAT(error.what(), HasSubstr("initial"));
   }
-  EXPECT_THAT(folder.files(), ElementsAre("pulled.json", "pulled.pvd", "pulled_0000.vtu"));
-  EXPECT_THAT(folder.text("pulled.pvd"), HasSubstr("pulled_0000.vtu"));
+  // The start, and the furthest equilibrium that was found when the reason was looked for.
+  EXPECT_THAT(folder.files(), ElementsAre("pulled.json", "pulled.pvd", "pulled_0000.vtu", "pulled_0001.vtu"));
+  EXPECT_THAT(folder.text("pulled.pvd"), HasSubstr("pulled_0001.vtu"));
 }
 
 }  // namespace

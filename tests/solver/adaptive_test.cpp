@@ -152,7 +152,9 @@ TEST(GeneralizedAlpha, KeepsMomentumWhereTheStepsChangeTheirLength) {
         // Newton's tolerance is 1e-12, here of forces of up to 1e4 over times of 1e-4.
         EXPECT_NEAR(outcome.state.velocity(3, 0), area, 1e-9 * std::abs(area)) << radius << " " << tolerance;
         // The displacement is of second order only.
-        if (tolerance < 1e-4) EXPECT_NEAR(outcome.state.displacement(3, 0), moment, 1e-3 * std::abs(moment)) << radius;
+        if (tolerance < 1e-4) {
+          EXPECT_NEAR(outcome.state.displacement(3, 0), moment, 1e-3 * std::abs(moment)) << radius;
+        }
       }
 }
 

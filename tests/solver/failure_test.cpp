@@ -196,5 +196,88 @@ TEST(Failure, AStartWithoutForcesIsNamedBeforeAnythingIsWritten) {
   }
 }
 
+// The state that a run stops in is the last that was found, also between two that are reported.
+TEST(Failure, TheLastPieceThatWasFoundIsTheLastGoodState) {
+  for (const Integrator integrator :
+       {Integrator::static_, Integrator::quasi_static, Integrator::implicit_euler, Integrator::newmark})
+    for (const bool adaptive : {false, true}) {
+      if (is_dynamic(integrator) && !adaptive) continue;
+      Model model = squeezed(-1.5);
+      model.settings.integrator = integrator;
+      model.settings.adaptive_step = adaptive;
+      model.steps[0].dt = 1;
+      model.steps[0].count = 1;
+      int states = 0;
+      const Outcome outcome = solve(model, [&](const State&) { return ++states > 0; });
+      EXPECT_EQ(outcome.stop, Stop::inverted_element) << name(integrator) << outcome.diagnosis;
+      EXPECT_EQ(states, 1);
+      const State& last = outcome.state;
+      EXPECT_GT(last.time, 0.5) << name(integrator);
+      EXPECT_LT(last.time, 1);
+      // The supports move in proportion to the time, and the state belongs to its time.
+      const int top = points_where(*model.mesh, at_top).front();
+      EXPECT_NEAR(last.displacement(top, 2), -1.5 * last.time, 1e-12) << name(integrator);
+      if (!is_dynamic(integrator)) {
+        EXPECT_NEAR(last.load_factor, last.time, 1e-12);
+      }
+      EXPECT_GT(outcome.check.smallest_J, 0);
+    }
+}
+
+// Of a body in free flight the mass holds all there is to hold: over dt = 1e6 it is lost in the round-off of the
+// stiffness, over a tenth of that it is not.
+TEST(AdaptiveStep, TriesShorterStepsWhereTheMatrixIsSingular) {
+  for (const bool adaptive : {false, true}) {
+    Model model =
+        make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1, .strain = Strain::small});
+    model.settings.integrator = Integrator::newmark;
+    model.settings.adaptive_step = adaptive;
+    model.steps[0].dt = 1e6;
+    model.steps[0].count = 1;
+    model.initial_velocity = Points::Constant(model.mesh->point_count(), 3, 1e-6);
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, adaptive ? Stop::converged : Stop::singular) << outcome.diagnosis;
+    // It flies straight on, up to what the solutions of such matrices are worth.
+    if (adaptive) {
+      EXPECT_NEAR(outcome.state.displacement(0, 0), 1, 1e-3);
+    }
+  }
+}
+
+// Both laws have forces where elements are inside out, and let a block be pushed through itself.
+TEST(Failure, DynamicsThatEndsInsideOutHasFailed) {
+  using LawPtr = std::shared_ptr<const Law>;
+  const auto pushed = [](LawPtr law, double force, Integrator integrator, int count) {
+    Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {}, 1);
+    model.regions[0].law = std::move(law);
+    model.settings.integrator = integrator;
+    model.steps[0].dt = 1.0 / count;
+    model.steps[0].count = count;
+    model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom))};
+    model.steps[0].forces = {{.name = "push",
+                              .nodes = points_where(*model.mesh, at_top),
+                              .values = {Vec3(0, 0, -force)},
+                              .factor = {[](double t) { return t; }, {}}}};
+    return model;
+  };
+  const LawPtr saint_venant =
+                   law_by_name("stVenantKirchhoffMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", 0.3}}),
+               cubic = neo_hookean("cubic", 1000, 0.3);
+  for (const LawPtr& law : {saint_venant, cubic})
+    for (const auto& [integrator, count] :
+         {std::pair(Integrator::implicit_euler, 20), std::pair(Integrator::central_difference, 4000)}) {
+      Model model = pushed(law, 1500, integrator, count);
+      int states = 0;
+      const Outcome outcome = solve(model, [&](const State&) { return ++states > 0; });
+      EXPECT_LE(outcome.check.smallest_J, 0);
+      EXPECT_EQ(outcome.stop, Stop::inverted_element) << name(integrator) << name(outcome.stop);
+      EXPECT_EQ(states, count + 1);
+      EXPECT_THAT(outcome.diagnosis, HasSubstr("step 1 'load' ended at time 1"));
+      EXPECT_THAT(outcome.diagnosis, HasSubstr("inverted element; worst element "));
+      model.settings.allow_inverted = true;
+      EXPECT_EQ(solve(model, {}).stop, Stop::converged);
+    }
+}
+
 }  // namespace
 }  // namespace msml::fe

@@ -50,6 +50,49 @@ TEST(FreeBody, UnderLoadsThatPushItAwayIsRefused) {
   EXPECT_THROW(solve(model, {}), Error);
 }
 
+/// What is said when a bar [0,2] x [0,1] x [0,1] that is held so is loaded so.
+std::string refused(std::vector<Prescribed> held, std::vector<NodalForce> forces) {
+  Model model = make_model(box_mesh(2, 1, 1, {2, 1, 1}, CellKind::tet4), {});
+  model.steps[0].prescribed = std::move(held);
+  model.steps[0].forces = std::move(forces);
+  try {
+    solve(model, {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "solved";
+}
+
+int corner(const Vec3& place) {
+  return points_where(box_mesh(2, 1, 1, {2, 1, 1}, CellKind::tet4),
+                      [&](const Vec3& X) { return (X - place).norm() < 1e-9; })
+      .front();
+}
+
+// Forces and moments by hand; the mean of the twelve nodes is (1 0.5 0.5).
+TEST(FreeBody, LoadsThatDoNotBalanceAreNamedWithTheMotionAndTheirSize) {
+  const auto force = [](const Vec3& place, const Vec3& F) {
+    return NodalForce{.name = "push", .nodes = {corner(place)}, .values = {F}};
+  };
+  const Vec3 a(0, 0, 0), b(2, 0, 0), c(2, 1, 1);
+  const std::string both = refused({}, {force(b, Vec3(0, 3, 0))});
+  EXPECT_THAT(both, HasSubstr("6 of the 6 rigid motions of the part of 12 nodes around (1 0.5 0.5) are free"));
+  // The arm (1, -0.5, -0.5) x (0, 3, 0) = (1.5, 0, 3).
+  EXPECT_THAT(both, HasSubstr("its loads do not balance: they push it along y with a force of 3, and round "
+                              "(0.447 0 0.894) through its centre with a moment of 3.354"));
+  EXPECT_THAT(refused({}, {force(b, Vec3(0, 3, 0)), force(a, Vec3(0, -3, 0))}),
+              HasSubstr("they push it round z through its centre with a moment of 6. Balance them"));
+  EXPECT_THAT(refused({}, {force(a, Vec3(-1, -1, -1)), force(c, Vec3(-1, -1, -1))}),
+              HasSubstr("along (-0.577 -0.577 -0.577) with a force of 3.464. "));
+  EXPECT_THAT(refused({fix({corner(a), corner(c)}, false, true, true), fix({corner(b)}, false, true, true)},
+                      {force(a, Vec3(-7, 1, 1))}),
+              HasSubstr("1 of the 6 rigid motions of the part of 12 nodes around (1 0.5 0.5) is free, and its loads do "
+                        "not balance: they push it along -x with a force of 7. "));
+  // A hinge along z through a: the force at b, 2 away.
+  EXPECT_THAT(refused({fix({corner(a), corner(Vec3(0, 0, 1))})}, {force(b, Vec3(4, 5, 6))}),
+              HasSubstr("round z through (0 0 0.5) with a moment of 10. "));
+}
+
 TEST(FreeBody, HeldInOneDirectionIsSolvedUpToTheOthers) {
   Model model = pulled_bar(Strain::small, 1000);
   model.steps[0].prescribed = {
