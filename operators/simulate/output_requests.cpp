@@ -192,11 +192,11 @@ Factory<OutputRequest> section() {
       "centroid.");
   tag.note(
       "The force is the work of the stress on the elements that the plane cuts, as their corners on the side of the "
-      "normal move by one unit, and the moment as they turn, less the part of gravity, body forces, inertia and "
+      "normal move by one unit, and the moment as they turn, less the part of gravity, body forces, tractions, "
+      "pressures, inertia and "
       "mass-proportional damping that acts between the plane and these corners: both balance what acts beyond the "
       "plane, wherever it lies in the elements, on coarse meshes too (of quadratic elements at finite strains the "
-      "moment up to their size). Curved elements are cut along their shapes. Loads on surfaces that the plane meets "
-      "count by the nodes they act on. A "
+      "moment up to their size). Curved elements are cut along their shapes. A "
       "supportingMesh carries its part.");
   tag.build([=](const Record& record) {
     OutputRequest request{.id = file_stem(record, id),

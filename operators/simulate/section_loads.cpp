@@ -120,6 +120,11 @@ double ActingStep::factor(const fe::BodyForce& force, double time) const {
   return (follows ? timed : steady) * (force.factor ? force.factor(time) : 1);
 }
 
+double ActingStep::factor(const fe::FaceLoad& load, double time) const {
+  const bool follows = load.factor || ((load.traction_function || load.pressure_function) && !load.steady);
+  return (follows ? timed : steady) * (load.factor ? load.factor(time) : 1);
+}
+
 std::vector<ActingStep> acting_steps(const fe::Model& model, const fe::State& state) {
   const fe::Step* now = &model.steps[static_cast<std::size_t>(state.step)];
   const fe::Integrator integrator = model.settings.integrator;

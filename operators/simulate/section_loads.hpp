@@ -15,12 +15,13 @@ struct Pull {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
 };
 
-/// The body forces of a step, and the factors that they act with: on those that ramp with the loads, and on those that
-/// follow time.
+/// A step whose loads act, and the factors that they act with: those that ramp with the loads, and those that follow
+/// time.
 struct ActingStep {
   const fe::Step* step;
   double steady, timed;
   double factor(const fe::BodyForce& force, double time) const;
+  double factor(const fe::FaceLoad& load, double time) const;
 };
 /// The steps whose loads act in a state: none at the start of statics; while a static step ramps that before it too.
 std::vector<ActingStep> acting_steps(const fe::Model& model, const fe::State& state);

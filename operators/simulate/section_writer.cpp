@@ -8,7 +8,7 @@
 
 #include "operators/simulate/output_writer.hpp"
 #include "operators/simulate/records.hpp"
-#include "operators/simulate/section_loads.hpp"
+#include "operators/simulate/section_faces.hpp"
 #include "operators/simulate/spots.hpp"
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/shapes.hpp"
@@ -221,6 +221,7 @@ class SectionWriter final : public TableWriter {
     for (const fe::Inlay& inlay : simulation.model.inlays)
       inlays_.push_back(std::make_unique<Inner>(model_, inlay, plane, side_));
     loads_ = std::make_unique<const SectionLoads>(model_, plane, side_);
+    faces_ = std::make_unique<const SectionFaces>(model_, plane, side_);
     if (pieces_.empty())
       refuse(*request.record, fmt::format("the plane through {} with the normal {} misses the body, which spans {}",
                                           place(*request.point), place(normal_), bounds(body_)));
@@ -236,13 +237,13 @@ class SectionWriter final : public TableWriter {
     for (Eigen::Index n = 0; n < arms.rows(); ++n) arms.row(n) *= side_[static_cast<std::size_t>(n)];
     add_pull(*body_.mesh, bridges_, results, x, centroid, arms, sum);
     for (const auto& inlay : inlays_) inlay->add(state, fields.positions() - body_.mesh->points, centroid, arms, sum);
-    const Pull loads = volume_loads(state, x, centroid);
+    const Pull loads = loads_between(state, x, centroid);
     const Vec3 f = sum.force - loads.force, m = sum.moment - loads.moment;
     return {{state.time, area, f[0], f[1], f[2], m[0], m[1], m[2]}};
   }
 
   /// What acts between the plane and the nodes.
-  Pull volume_loads(const fe::State& state, const Points& x, const Vec3& centre) const {
+  Pull loads_between(const fe::State& state, const Points& x, const Vec3& centre) const {
     const std::vector<ActingStep> acting = acting_steps(model_, state);
     Points per_mass = Points::Zero(x.rows(), 3);
     for (const int n : loads_->points()) per_mass.row(n) = force_per_mass(model_, state, acting, n).transpose();
@@ -251,6 +252,7 @@ class SectionWriter final : public TableWriter {
     for (const ActingStep& each : acting)
       for (const fe::BodyForce& force : each.step->body_forces)
         loads_->add_body_force(force, each.factor(force, state.time), state.time, x, centre, sum);
+    faces_->add(state, acting, x, centre, sum);
     return sum;
   }
 
@@ -279,6 +281,7 @@ class SectionWriter final : public TableWriter {
   std::vector<double> side_;
   std::vector<Bridge> bridges_;
   std::unique_ptr<const SectionLoads> loads_;
+  std::unique_ptr<const SectionFaces> faces_;
   std::vector<std::unique_ptr<const Inner>> inlays_;  // in their places: they hold what points at themselves
 };
 
