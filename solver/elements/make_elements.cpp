@@ -34,7 +34,8 @@ std::unique_ptr<Elements> standard_elements(const Model& model, CellKind kind) {
 
 std::unique_ptr<Elements> elements_of_body(const Model& model) {
   if (model.formulation == Formulation::single_rotation) return make_single_rotation_elements(model);
-  if (model.formulation == Formulation::mixed && model.quadrature == 8) return std::make_unique<MixedElements<8>>(model);
+  if (model.formulation == Formulation::mixed && model.quadrature == 8)
+    return std::make_unique<MixedElements<8>>(model);
   if (model.formulation == Formulation::mixed) return std::make_unique<MixedElements<4>>(model);
   if (model.formulation == Formulation::fbar) return std::make_unique<PatchElements>(model);
   return standard_elements(model, element_kind(model));

@@ -73,9 +73,9 @@ int axis_of(const Vec3& normal);
 /// place; what other tasks give is not looked at.
 void check_counts(const Record& condition, const fe::Tell& tell);
 
-/// Throws Error where an initial velocity or, in dynamics, displacement changes volumes that a law keeps: its divergence
-/// or det F - 1, by accurate differences, is clearly not zero at any of 51 fixed places of three scales. `alone`: no
-/// other tag of its kind overwrites it somewhere.
+/// Throws Error where an initial velocity or, in dynamics, displacement changes volumes that a law keeps: its
+/// divergence or det F - 1, by accurate differences, is clearly not zero at any of 51 fixed places of three scales.
+/// `alone`: no other tag of its kind overwrites it somewhere.
 void check_volumes(const Record& condition, const Surroundings& around, bool alone);
 
 /// Throws Error unless the numbers of an attribute are one vector for all nodes (three numbers or expressions), or
