@@ -213,7 +213,9 @@ void Newton::take_jump(const Increment& increment, const Vector& jump, const Vec
 IncrementResult Newton::begin(const Increment& increment, const Vector& jump) {
   IncrementResult result;
   Vector& u = result.u = increment.start;
-  if (tangent_current_ && springs_in_tangent_ == springs_of(increment.loads))
+  if (increment.near && fits(increment.motion))
+    pulse();
+  else if (tangent_current_ && springs_in_tangent_ == springs_of(increment.loads))
     equations_.evaluate_loads(u, increment.loads, forces_, followers_.get());
   else
     prepare(u, increment.loads);
@@ -241,12 +243,15 @@ IncrementResult Newton::run(const Increment& increment) {
   if (!moved && limit > 1 && accepted(increment, residual, result))
     return result.stop = verdict(increment, result), result;
   linear_->expect(increment.expected);
+  const bool again = increment.near && fits(increment.motion);
   for (int iteration = 0; iteration < limit; ++iteration) {
     if (iteration > 0) evaluate(increment, u, want_, true);
     ++iterations_;
-    const bool moving = iteration == 0 && moved;
+    const bool moving = iteration == 0 && moved, exact = iteration > 0 || !again;
     definite_taken_ = false;
-    const LinearStatus status = direction(increment, u, moving ? jump : Vector(), residual, step);
+    const LinearStatus status =
+        exact ? direction(increment, u, moving ? jump : Vector(), residual, step)
+              : solve_again(increment, residual, linear_tolerance(residual, increment.fixed), step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     result.definite += definite_taken_;
     tangent_current_ = insist_definite_ = false;
@@ -263,9 +268,9 @@ IncrementResult Newton::run(const Increment& increment) {
       insist_definite_ = true;
       evaluate(increment, u, want_, false);
     }
-    last_step_ = definite_taken_ ? std::numeric_limits<double>::infinity() : step.cwiseAbs().maxCoeff();
+    last_step_ = definite_taken_ || !exact ? std::numeric_limits<double>::infinity() : step.cwiseAbs().maxCoeff();
     last_ = size_of(moving ? Vector(u - increment.start) : Vector(share * step), residual);
-    exact_ = share == 1 && !definite_taken_ && !moving;
+    exact_ = exact && share == 1 && !definite_taken_ && !moving;
     residual = free_residual(increment);
     note_residual(increment, residual, result);
     if (accepted(increment, residual, result)) return result.stop = verdict(increment, result), result;

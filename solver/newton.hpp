@@ -18,6 +18,8 @@ struct Increment {
   const Slides* slides = nullptr;  ///< nodes in planes; null: none
   Vector expected = {};            ///< change of the displacement that is likely; empty: none
   double met = 0;                  ///< largest scale of the forces met on the way to `start`
+  bool near = false;  ///< the forces evaluated last are those at `start`, and its damping alone has changed since: the
+                      ///< matrix that was factorised last serves for the first iteration
 };
 
 /// How it went.
@@ -164,6 +166,10 @@ class Newton {
   bool at_round_off(const Vector& residual, const Mask& fixed, const Vector& u) const;
   /// The criteria of increment and energy, where the residual's is met.
   bool complete(const Increment& increment, const Vector& residual, IncrementResult& result);
+  /// A matrix that was factorised is one of this motion.
+  bool fits(const Kinematics& motion) const;
+  /// A solution by the matrix that was factorised last.
+  LinearStatus solve_again(const Increment& increment, const Vector& residual, double tolerance, Vector& step);
   /// What a further step would add, by the matrix that was factorised last; false where there is none.
   bool correction(const Increment& increment, const Vector& residual, Vector& step);
   bool exploded(const IncrementResult& result) const;

@@ -142,20 +142,26 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   return status;
 }
 
-bool Newton::correction(const Increment& increment, const Vector& residual, Vector& step) {
-  const Kinematics& motion = increment.motion;
-  if (!factor_known_ || motion.velocity_factor != factor_velocity_ ||
-      motion.acceleration_factor != factor_acceleration_)
-    return false;
+bool Newton::fits(const Kinematics& motion) const {
+  return factor_known_ && motion.velocity_factor == factor_velocity_ &&
+         motion.acceleration_factor == factor_acceleration_;
+}
+
+LinearStatus Newton::solve_again(const Increment& increment, const Vector& residual, double tolerance, Vector& step) {
   const Stopwatch watch(seconds_linear_);
-  Vector right = residual / motion.force_share;
+  Vector right = residual / increment.motion.force_share;
   if (increment.slides) increment.slides->project(right);
   ++solves_;
-  constexpr double rough = 0.1;  // one figure is enough to know how much is missing
   const LinearStatus status =
-      whole_taken_ ? unsymmetric_->solve(right, rough, step) : solve(increment, right, rough, step);
+      whole_taken_ ? unsymmetric_->solve(right, tolerance, step) : solve(increment, right, tolerance, step);
   keep_in_planes(increment, step);
-  return status == LinearStatus::done && step.allFinite();
+  return status;
+}
+
+bool Newton::correction(const Increment& increment, const Vector& residual, Vector& step) {
+  constexpr double rough = 0.1;  // one figure is enough to know how much is missing
+  return fits(increment.motion) && solve_again(increment, residual, rough, step) == LinearStatus::done &&
+         step.allFinite();
 }
 
 }  // namespace msml::fe

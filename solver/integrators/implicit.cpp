@@ -98,7 +98,10 @@ IncrementResult reach(Stage& stage, Trial& trial) {
     std::swap(stage.C.values, stage.C_end->values);
     stage.C_end_current = false;
     run.newton.forget();
-    IncrementResult next = run.reach(trial.increment);
+    trial.increment.near = true;
+    IncrementResult next = run.newton.run(trial.increment);
+    trial.increment.near = false;
+    if (next.stop != Stop::converged) next = run.reach(trial.increment);
     if (next.stop != Stop::converged) {
       std::swap(stage.C.values, stage.C_end->values);
       run.newton.forget();
