@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "msml/core/atomic_file.hpp"
 #include "operators/simulate/output_writer.hpp"
@@ -74,6 +75,17 @@ void CsvFile::add(const std::vector<double>& row) {
   text_ += '\n';
 }
 
+bool CsvFile::end_at(double time) {
+  const double round_off = 1e-14 * std::abs(time);  // of numbers with fifteen digits
+  const auto last_line = [&] { return text_.rfind('\n', text_.size() - 2) + 1; };
+  double found = 0;
+  for (std::size_t first = text_.find('\n') + 1; text_.size() > first; text_.resize(last_line())) {
+    found = std::strtod(text_.c_str() + last_line(), nullptr);
+    if (found <= time + round_off) return found < time - round_off;
+  }
+  return true;
+}
+
 void CsvFile::save(bool at_once) {
   const auto now = std::chrono::steady_clock::now();
   if (!at_once && now - saved_ < std::chrono::seconds(1)) return;
@@ -93,7 +105,9 @@ void TableWriter::write(const fe::State& state, StateFields& fields) {
 }
 
 void TableWriter::finish(const fe::State& last, StateFields& fields) {
-  if (last_ != last.increment || last_time_ != last.time) write(last, fields);
+  bool missing = last_ != last.increment || last_time_ != last.time;
+  if (last_time_ > last.time) missing = file_.end_at(last.time);
+  if (missing) write(last, fields);
   file_.save(true);
 }
 

@@ -22,7 +22,8 @@ class OutputWriter {
   virtual bool wants(const fe::State& state) const = 0;
   /// Writes the state, and files whole or not at all.
   virtual void write(const fe::State& state, StateFields& fields) = 0;
-  /// Writes the last state if it has not been written yet, and brings the files to their end.
+  /// Writes the last state if it has not been written yet, takes away those that came after it, and brings the files to
+  /// their end.
   virtual void finish(const fe::State& last, StateFields& fields) = 0;
   /// What `${id}` stands for.
   virtual Value value() const = 0;
@@ -40,6 +41,8 @@ class CsvFile {
  public:
   CsvFile(std::filesystem::path path, const std::vector<std::string>& names);
   void add(const std::vector<double>& row);
+  /// Takes away the last lines whose first number, the time, is larger; true if none is left of that time.
+  bool end_at(double time);
   /// Writes the file as it is now: at once, or at most once a second.
   void save(bool at_once);
   const std::filesystem::path& path() const { return path_; }

@@ -79,7 +79,13 @@ void SeriesWriter::write(const fe::State& state, StateFields& fields) {
 }
 
 void SeriesWriter::finish(const fe::State& last, StateFields& fields) {
-  if (last_increment_ != last.increment || times_.back() != last.time) write(last, fields);
+  bool missing = last_increment_ != last.increment || times_.back() != last.time;
+  while (!times_.empty() && times_.back() > last.time) {  // states that a run went back from
+    times_.pop_back();
+    files_.pop_back();
+    missing = times_.empty() || times_.back() != last.time;
+  }
+  if (missing) write(last, fields);
   write_collection();
   remove_older_states();
 }

@@ -19,7 +19,8 @@ class SeriesWriter final : public OutputWriter {
   bool wants(const fe::State& state) const override;
   /// Writes ID_NNNN.vtu whole or not at all, and now and then ID.pvd.
   void write(const fe::State& state, StateFields& fields) override;
-  /// Writes the state if it is not the one written last, then ID.pvd, and removes states of an earlier, longer run.
+  /// Writes the state if it is not the one written last, then ID.pvd, and removes states that came after it and those
+  /// of an earlier, longer run.
   void finish(const fe::State& last, StateFields& fields) override;
   /// The Series that was written.
   Value value() const override;

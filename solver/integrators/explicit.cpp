@@ -2,8 +2,10 @@
 // Forward Euler, symplectic Euler and central differences: no equations to solve, but a largest stable time step.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "solver/integrators/stepper.hpp"
 #include "solver/stable_step.hpp"
@@ -12,6 +14,8 @@ namespace msml::fe {
 namespace {
 
 constexpr double most_growth = 2;  // of an undamped motion over the rest of a run
+constexpr double odd = 1;          // times the energy that was put in: more is no motion of the body any more
+constexpr double absurd = 1e6;     // and this says that it does not come back
 constexpr int watch_every = 100;   // time steps between estimates of the stable one, where the stiffness may change
 
 /// What damping sees in a time step.
@@ -22,9 +26,11 @@ struct Braking {
 
 struct Explicit {
   Run& run;
-  BlockMatrix C;        ///< damping beside alpha M
-  bool damped = false;  ///< there is such damping
-  bool warned = false;  ///< of motions that grow
+  BlockMatrix C;                    ///< damping beside alpha M
+  bool damped = false;              ///< there is such damping
+  bool warned = false;              ///< of motions that grow
+  double put_in = 0;                ///< largest energy that start and loads have given, while the motion was sane
+  std::optional<Motion> sane = {};  ///< the last state before the energy grew beyond that, while it is beyond
 
   /// M a = external - internal - damping at free unknowns; `a` of fixed ones is given. alpha M brakes the velocity with
   /// its share of that acceleration: a diagonal equation.
@@ -86,16 +92,16 @@ struct Explicit {
     return false;
   }
 
-  /// A state that once was sound has grown until its stiffness is beyond numbers. Always false: that is too large a
-  /// step.
-  bool blown_up(const Step& step) {
+  /// A state that once was sound has grown until its stiffness is beyond numbers, or its energy absurd. Always false:
+  /// that is too large a step.
+  bool blown_up(const Step& step, const std::string& far = "beyond all numbers") {
     Outcome& outcome = run.outcome;
     outcome.stop = Stop::unstable_step;
     outcome.diagnosis = fmt::format(
-        "step {} '{}' stopped at time {:g}: within {} time steps the motion grew beyond all numbers, as it does where "
+        "step {} '{}' stopped at time {:g}: within {} time steps the motion grew {}, as it does where "
         "dt = {:g} is above the stable step of {} ({:.4g} when last looked at; it falls where a body stiffens); take a "
         "smaller dt (and more iterations), or an implicit timeIntegration",
-        run.now.step + 1, step.name, run.now.time, run.now.increment, step.dt, name(run.model.settings.integrator),
+        run.now.step + 1, step.name, run.now.time, run.now.increment, far, step.dt, name(run.model.settings.integrator),
         outcome.stable_step);
     return false;
   }
@@ -155,7 +161,29 @@ struct Explicit {
     run.set_reactions(run.newton.forces().residual(), supports);
     run.equations.end_step(now.u);
     run.account(before.u);
-    return true;
+    if (run.model.settings.allow_unstable || !exploded(before)) return true;
+    const std::string share =
+        fmt::format("to {:.2g} times the energy that its start and loads put in", run.gained / put_in);
+    run.now = before;
+    if (stable(step, supports.fixed, loads, 0)) blown_up(step, share);
+    return false;
+  }
+
+  /// Energy that nothing has put in is no motion of the body: what it begins with, and how far it goes. Steps near the
+  /// stable one make some of it, and at the very start loads have not done any work yet.
+  bool exploded(const Motion& before) {
+    if (run.gained <= odd * put_in || put_in == 0) {
+      sane.reset();
+      put_in = std::max({put_in, *run.energy_at_start, std::abs(run.now.energies.external_work)});
+    } else if (!sane && !run.equations.has_history()) {
+      sane = before;
+    }
+    return put_in > 0 && run.gained > absurd * put_in;
+  }
+
+  /// To the last state that is one of the body.
+  void go_back() {
+    if (sane) run.now = *sane;
   }
 
   /// False where the state cannot be gone on from; the one before is kept then.
@@ -200,11 +228,11 @@ void run_explicit(Run& run) {
     if (s == 0 && !run.accept()) return;
     const double start = run.now.time;
     for (int k = 1; k <= step.count; ++k) {
-      if (!method.advance(step, supports, k, loads, start + k * step.dt)) return;
+      if (!method.advance(step, supports, k, loads, start + k * step.dt)) return method.go_back();
       if (!run.accept()) return;
       if (k % watch_every == 0 && !run.equations.small_strain() &&
           !method.stable(step, supports.fixed, loads, step.count - k + 1))
-        return;
+        return method.go_back();
     }
   }
 }

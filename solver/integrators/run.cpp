@@ -122,9 +122,9 @@ void Run::mark() {
   const Energies& e = now.energies;
   const double held = e.elastic + e.kinetic;
   if (!energy_at_start) energy_at_start = held;
-  const double gain = held + e.dissipated - e.external_work - *energy_at_start;
-  most_gained = std::max(most_gained, gain);
-  most_lost = std::max(most_lost, -gain);
+  gained = held + e.dissipated - e.external_work - *energy_at_start;
+  most_gained = std::max(most_gained, gained);
+  most_lost = std::max(most_lost, -gained);
   most_energy = std::max({most_energy, held, std::abs(e.external_work), e.dissipated});
 }
 

@@ -37,7 +37,8 @@ struct Run {
   Vector acceleration_now = {};        ///< where that of the method, now.a, belongs to another time; empty: it does not
   double step_of_a = 0;                ///< length of the steps that now.a goes with, see change_step(); 0: any
   std::optional<double> energy_at_start = {};  ///< elastic and kinetic, at the first mark
-  double most_gained = 0, most_lost = 0;       ///< energy beside that at the start, work and dissipation, at any mark
+  double gained = 0;                           ///< energy beside that at the start, work and dissipation
+  double most_gained = 0, most_lost = 0;       ///< its largest values at any mark
   double most_energy = 0;                      ///< largest of all of these
   bool tangled = false;  ///< at the last mark an element had less than a tenth of its volume, or was inside out
   std::optional<double> first_inverted = {}, last_inverted = {};  ///< times of marks with elements inside out

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "operators/simulate/output_writer.hpp"
 #include "tests/operators/simulate_scene.hpp"
 
 namespace msml::test {
@@ -132,6 +133,45 @@ TEST(Fields, OfAHomogeneousStateAreKnown) {
   near(at_centre("secondPiola"), {0, 0, 10, 0, 0, 0});          // and S
   near(at_centre("energyDensity_nodal"), {0.05});
   near(at_centre("J"), {x * x * z});
+}
+
+// A run that blew up goes back to its last good state: what came after that is no result.
+TEST(Outputs, StatesThatARunGoesBackFromAreTakenAway) {
+  const Language language;
+  Listener listener;
+  const Folder folder;
+  Scene scene = cube(language);
+  const Record record = scene.record(language);
+  simulation::Simulation simulation = simulation::build_model(record, listener, 1);
+  simulation.outputs = {{.id = "s", .fields = {"displacement"}},
+                        {.id = "e", .kind = simulation::OutputKind::energies},
+                        {.id = "v", .kind = simulation::OutputKind::volume}};
+  for (const double back : {1.0, 1.5}) {
+    const auto writers = simulation::make_writers(simulation, folder.path(), listener);
+    const auto state_at = [&](double time) {
+      fe::State state{.time = time, .increment = static_cast<int>(time)};
+      state.displacement = Points::Zero(simulation.model.mesh->point_count(), 3);
+      return state;
+    };
+    for (const auto& writer : writers) {
+      for (const double time : {0, 1, 2, 3}) {
+        const fe::State state = state_at(time);
+        simulation::StateFields fields(simulation.model, simulation.body, state);
+        writer->write(state, fields);
+      }
+      const fe::State last = state_at(back);
+      simulation::StateFields fields(simulation.model, simulation.body, last);
+      writer->finish(last, fields);
+    }
+    for (const char* table : {"e.csv", "v.csv"}) {
+      std::vector<double> times;
+      for (const Numbers& row : csv_rows(folder.text(table))) times.push_back(row[0]);
+      EXPECT_EQ(times, back == 1 ? std::vector<double>({0, 1}) : std::vector<double>({0, 1, 1.5})) << table;
+    }
+    EXPECT_THAT(folder.text("s.pvd"), testing::Not(testing::HasSubstr("timestep=\"2\"")));
+    EXPECT_EQ(std::filesystem::exists(folder.path() / "s_0002.vtu"), back > 1);
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "s_0003.vtu"));
+  }
 }
 
 }  // namespace

@@ -244,29 +244,32 @@ TEST(AdaptiveStep, TriesShorterStepsWhereTheMatrixIsSingular) {
   }
 }
 
+using LawPtr = std::shared_ptr<const Law>;
+
+/// A unit cube whose top is pushed down by forces that grow with t to 1500 at each node in the time 1.
+Model pushed_down(LawPtr law, Integrator integrator, int count) {
+  Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {}, 1);
+  model.regions[0].law = std::move(law);
+  model.settings.integrator = integrator;
+  model.steps[0].dt = 1.0 / count;
+  model.steps[0].count = count;
+  model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom))};
+  model.steps[0].forces = {{.name = "push",
+                            .nodes = points_where(*model.mesh, at_top),
+                            .values = {Vec3(0, 0, -1500)},
+                            .factor = {[](double t) { return t; }, {}}}};
+  return model;
+}
+
 // Both laws have forces where elements are inside out, and let a block be pushed through itself.
 TEST(Failure, DynamicsThatEndsInsideOutHasFailed) {
-  using LawPtr = std::shared_ptr<const Law>;
-  const auto pushed = [](LawPtr law, double force, Integrator integrator, int count) {
-    Model model = make_model(box_mesh(1, 1, 1, {1, 1, 1}, CellKind::tet4), {}, 1);
-    model.regions[0].law = std::move(law);
-    model.settings.integrator = integrator;
-    model.steps[0].dt = 1.0 / count;
-    model.steps[0].count = count;
-    model.steps[0].prescribed = {fix(points_where(*model.mesh, at_bottom))};
-    model.steps[0].forces = {{.name = "push",
-                              .nodes = points_where(*model.mesh, at_top),
-                              .values = {Vec3(0, 0, -force)},
-                              .factor = {[](double t) { return t; }, {}}}};
-    return model;
-  };
   const LawPtr saint_venant =
                    law_by_name("stVenantKirchhoffMaterial", {{"youngModulus", 1000.0}, {"poissonRatio", 0.3}}),
                cubic = neo_hookean("cubic", 1000, 0.3);
   for (const LawPtr& law : {saint_venant, cubic})
     for (const auto& [integrator, count] :
          {std::pair(Integrator::implicit_euler, 20), std::pair(Integrator::central_difference, 4000)}) {
-      Model model = pushed(law, 1500, integrator, count);
+      Model model = pushed_down(law, integrator, count);
       int states = 0;
       const Outcome outcome = solve(model, [&](const State&) { return ++states > 0; });
       EXPECT_LE(outcome.check.smallest_J, 0);
@@ -277,6 +280,26 @@ TEST(Failure, DynamicsThatEndsInsideOutHasFailed) {
       model.settings.allow_inverted = true;
       EXPECT_EQ(solve(model, {}).stop, Stop::converged);
     }
+}
+
+// The body stiffens until dt is far above the stable step; within a few steps the energy grows to numbers of a hundred
+// digits. What is handed back is from before, and its energy is what the load has put in, at least by its size.
+TEST(Failure, AnExplicitMotionThatBlowsUpEndsInAStateFromBefore) {
+  for (const int count : {200, 500}) {
+    double time = 0;
+    const Outcome outcome = solve(pushed_down(neo_hookean("cubic", 1000, 0.3), Integrator::central_difference, count),
+                                  [&](const State& state) { return time = state.time, true; });
+    EXPECT_EQ(outcome.stop, Stop::unstable_step) << name(outcome.stop);
+    EXPECT_THAT(outcome.diagnosis, HasSubstr("is unstable above"));
+    const State& last = outcome.state;
+    EXPECT_LT(last.time, time);
+    EXPECT_GT(last.time, 0.3);
+    EXPECT_LT(last.energies.elastic + last.energies.kinetic, 3 * last.energies.external_work);
+    EXPECT_GT(outcome.check.smallest_J, -2);
+    Model model = pushed_down(neo_hookean("cubic", 1000, 0.3), Integrator::central_difference, count);
+    model.settings.allow_unstable = true;  // goes on to the end of numbers
+    EXPECT_GT(solve(model, {}).state.energies.kinetic, 1e50);
+  }
 }
 
 }  // namespace
