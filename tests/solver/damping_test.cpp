@@ -3,9 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
 
 #include "tests/solver/law_by_name.hpp"
 #include "tests/solver/oscillator.hpp"
@@ -133,6 +134,22 @@ TEST(Dampers, BetweenTwoMassesKeepTheirAngularMomentum) {
     const double coarse = change(200), fine = change(400);
     EXPECT_LT(coarse, 4e-4) << name(integrator);
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name(integrator);
+  }
+}
+
+// A mass that circles about the other end of its spring, by a fiftieth of a turn in each step and by half a turn.
+TEST(Dampers, ThatTurnTooFarInAStepAreNamed) {
+  for (const double dt : {0.126, 3.0}) {
+    Model model = particles({Vec3(1, 0, 0)}, Integrator::newmark, dt, 10);
+    model.initial_velocity = Points::Zero(1, 3);
+    model.initial_velocity(0, 1) = 1;
+    model.steps[0].springs = {{.name = "s", .first = 0, .stiffness = 2, .damping = 20, .rest = 1}};
+    const Outcome outcome = solve(model, {});
+    EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+    const bool told = std::ranges::any_of(outcome.warnings, [](const std::string& warning) {
+      return warning.find("did not settle on those of the end of the step") != std::string::npos;
+    });
+    EXPECT_EQ(told, dt > 1) << dt;
   }
 }
 
