@@ -5,7 +5,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <new>
-#include <system_error>
 
 #include "msml/commands/commands.hpp"
 #include "msml/commands/help.hpp"
@@ -194,15 +193,12 @@ int run_program(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "not enough memory\n");
     return static_cast<int>(msml::Failure::not_converged);
-  } catch (const std::system_error& error) {
-    const bool crowded = error.code() == std::errc::resource_unavailable_try_again;
+  } catch (const std::exception& error) {
+    const bool crowded = msml::lacks_a_thread(error);
     const std::string told = crowded ? "not enough memory for another thread; try --threads 1 --jobs 1"
                                      : std::string("unexpected: ") + error.what();
     std::fprintf(stderr, "%s\n", told.c_str());
     return static_cast<int>(crowded ? msml::Failure::not_converged : msml::Failure::internal);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "unexpected: %s\n", error.what());
-    return static_cast<int>(msml::Failure::internal);
   }
 }
 

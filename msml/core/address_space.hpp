@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether the process may take as much memory as the machine has.
+// Limits of the process: memory and threads.
 #pragma once
 #include <sys/resource.h>
+
+#include <exception>
+#include <string_view>
+#include <system_error>
 
 namespace msml {
 
@@ -10,6 +14,13 @@ namespace msml {
 inline bool address_space_is_limited() {
   rlimit limit{};
   return ::getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+}
+
+/// True if an exception says that the system gives no other thread: the standard library's own, or that of oneTBB.
+inline bool lacks_a_thread(const std::exception& error) {
+  const auto* system = dynamic_cast<const std::system_error*>(&error);
+  if (system && system->code() == std::errc::resource_unavailable_try_again) return true;
+  return std::string_view(error.what()).find("pthread_create") != std::string_view::npos;
 }
 
 }  // namespace msml

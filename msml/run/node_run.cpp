@@ -5,13 +5,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-
 #include <cmath>
 #include <mutex>
 #include <new>
-#include <system_error>
 
 #include "msml/compile/scope.hpp"
+#include "msml/core/address_space.hpp"
 #include "msml/core/atomic_file.hpp"
 
 namespace msml {
@@ -195,13 +194,11 @@ std::vector<Value> run_node(const Graph& graph, int index, const Results& result
   } catch (const std::bad_alloc&) {
     report.facts["ended"] = R"("out of memory")";
     throw Error(named("not enough memory"), node.where, Failure::not_converged);
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::resource_unavailable_try_again)
+  } catch (const std::exception& error) {
+    if (!lacks_a_thread(error))
       throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
     report.facts["ended"] = R"("out of memory")";
     throw Error(named("not enough memory for another thread; try --threads 1"), node.where, Failure::not_converged);
-  } catch (const std::exception& error) {
-    throw Error(named(std::string("unexpected: ") + error.what()), node.where, Failure::internal);
   } catch (...) {
     throw Error(named("unexpected failure without a message"), node.where, Failure::internal);
   }
