@@ -101,10 +101,10 @@ FormulaFacts examine(const std::string& expression) {
 
 namespace {
 
-/// Numbers that an expression holds, those between any two of them, and the same with the other sign.
-std::vector<double> turning_points(const std::string& expression) {
+/// Numbers that an expression holds, without exponents' signs; 0 and 1 are among them.
+std::vector<double> numbers_in(const std::string& expression) {
   std::vector<double> found{0, 1};
-  for (std::size_t i = 0; i < expression.size() && found.size() < 12; ++i) {
+  for (std::size_t i = 0; i < expression.size(); ++i) {
     if (!std::isdigit(static_cast<unsigned char>(expression[i]))) continue;
     double number = 0;
     const char* start = expression.data() + i;
@@ -112,45 +112,97 @@ std::vector<double> turning_points(const std::string& expression) {
     if (error == std::errc() && std::isfinite(number)) found.push_back(number);
     i += static_cast<std::size_t>(std::max<std::ptrdiff_t>(end - start, 1)) - 1;
   }
-  const std::size_t count = found.size();
-  for (std::size_t i = 0; i < count; ++i)
-    for (std::size_t k = 0; k < i; ++k) found.push_back(0.5 * (found[i] + found[k]));
-  for (std::size_t i = found.size(); i-- > 0;) found.push_back(-found[i]);
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+/// Where an expression may turn in one variable: (a +- b) / c of the numbers a, b, c that it holds, and their
+/// negatives.
+std::vector<double> turning_points(const std::vector<double>& numbers) {
+  std::vector<double> found;
+  for (const double a : numbers)
+    for (const double b : numbers)
+      for (const double c : numbers)
+        for (const double sign : {-1.0, 1.0})
+          for (const double divisor : {c, 2.0})
+            if (divisor != 0)
+              for (const double x : {(a + sign * b) / divisor, -(a + sign * b) / divisor}) found.push_back(x);
+  std::sort(found.begin(), found.end());
+  const auto same = [](double x, double y) { return std::abs(x - y) <= 1e-12 * std::abs(x); };
+  found.erase(std::unique(found.begin(), found.end(), same), found.end());
   return found;
 }
 
 /// Uniform in [-1, 1), the same on every machine.
 double draw(std::mt19937& random) { return 2 * (random() / 4294967296.0) - 1; }
 
+/// An expression at places of choice. Throws muParser's exceptions.
+class Trials {
+ public:
+  Trials(const std::string& expression, const Range& range) : range_(range) {
+    define(parser_, place_);
+    parser_.SetExpr(expression);
+    for (const auto& [name, variable] : parser_.GetUsedVar()) used_.push_back(variable);
+  }
+  /// True if it suits at one of several thousand places of all scales and signs.
+  bool at_random() {
+    std::mt19937 random(1);
+    for (int n = 0; n < 4000; ++n) {
+      const double scale = std::pow(10.0, n % 13 - 6);
+      for (double* x : {&place_.X, &place_.Y, &place_.Z, &place_.t}) *x = scale * draw(random);
+      if (suits()) return true;
+      if (n == 0) first_ = value_, there_ = place_;
+    }
+    return false;
+  }
+  /// The same where each variable has a value of a list and a little beside; true too where these are too many.
+  bool among(const std::vector<double>& values) {
+    constexpr double most = 2e5;
+    if (std::pow(2.0 * static_cast<double>(values.size()), static_cast<double>(used_.size())) > most) return true;
+    return among(values, 0);
+  }
+  std::string words() const {
+    return fmt::format("is {} at X = {:.3g}, Y = {:.3g}, Z = {:.3g}, t = {:.3g}, and {} at no place and time at all",
+                       std::isnan(first_) ? "nan" : fmt::format("{:.4g}", first_), there_.X, there_.Y, there_.Z,
+                       there_.t, range_.bounded() ? range_.str() : "finite");
+  }
+
+ private:
+  bool suits() {
+    place_.t = std::abs(place_.t);
+    value_ = parser_.Eval();
+    return range_.contains(value_);
+  }
+  bool among(const std::vector<double>& values, std::size_t variable) {
+    if (variable == used_.size()) return suits();
+    for (const double value : values)
+      for (const double beside : {0.0, 1e-3 * std::max(1e-3, std::abs(value))}) {
+        *used_[variable] = value + beside;
+        if (among(values, variable + 1)) return true;
+      }
+    return false;
+  }
+
+  const Range& range_;
+  mu::Parser parser_;
+  Place place_, there_;
+  std::vector<double*> used_;
+  double value_ = 0, first_ = 0;
+};
+
 }  // namespace
 
 std::string never_allowed(const std::string& expression, const Range& range) {
-  constexpr int fifty = 50, most = 4000;  // nearly every expression suits at the first places
-  mu::Parser parser;
-  Place place;
-  define(parser, place);
-  std::mt19937 random(1);
-  const std::vector<double> turns = turning_points(expression);
-  double first = 0;
-  Place there;
   try {
-    parser.SetExpr(expression);
-    for (int n = 0; n < most; ++n) {
-      const double scale = std::pow(10.0, n % 13 - 6);
-      for (double* x : {&place.X, &place.Y, &place.Z, &place.t})
-        *x = n % 2 == 0 || n < fifty / 2 ? scale * draw(random)
-                                         : turns[random() % turns.size()] + 1e-3 * scale * draw(random);
-      place.t = std::abs(place.t);
-      const double value = parser.Eval();
-      if (range.contains(value)) return "";
-      if (n == 0) first = value, there = place;
-    }
+    Trials trials(expression, range);
+    if (trials.at_random()) return "";
+    const std::vector<double> numbers = numbers_in(expression);
+    constexpr std::size_t few = 12;
+    return numbers.size() > few || trials.among(turning_points(numbers)) ? "" : trials.words();
   } catch (const mu::Parser::exception_type&) {
     return "";
   }
-  return fmt::format("is {} at X = {:.3g}, Y = {:.3g}, Z = {:.3g}, t = {:.3g}, and {} at no place and time at all",
-                     std::isnan(first) ? "nan" : fmt::format("{:.4g}", first), there.X, there.Y, there.Z, there.t,
-                     range.bounded() ? range.str() : "finite");
 }
 
 std::vector<std::string> expression_parts(const std::string& text) {

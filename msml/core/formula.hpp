@@ -18,8 +18,9 @@ struct FormulaFacts {
 FormulaFacts examine(const std::string& expression);
 
 /// Why an expression is of no use wherever and whenever it is evaluated: it is not finite, or not in the range, at any
-/// of several thousand places X, Y, Z and times t >= 0, of all scales and signs and between the numbers that it holds
-/// itself. "" where one of them suits, and for a faulty expression. The places are always the same.
+/// of several thousand places X, Y, Z and times t >= 0, of all scales and signs, nor where each variable is one of what
+/// the numbers in the expression give by (a +- b) / c. "" where one of them suits, where these are too many to try, and
+/// for a faulty expression: better not refused than wrongly. The places are always the same.
 std::string never_allowed(const std::string& expression, const Range& range);
 
 /// Parts of a list outside parentheses: at commas if there are any, else at blanks. One pair of braces is dropped.

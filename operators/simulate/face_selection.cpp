@@ -53,7 +53,8 @@ class Matcher {
   Matcher(const Record& record, const Body& body, const Mesh& triangles, bool shares_points)
       : record_(record), body_(body), triangles_(triangles), shares_points_(shares_points), table_(body) {}
 
-  std::vector<fe::Face> match(const std::vector<int>& cells) {
+  /// `chosen`: by their nodes, so that parts of faces were not meant.
+  std::vector<fe::Face> match(const std::vector<int>& cells, bool chosen = false) {
     std::vector<fe::Face> faces;
     for (const int cell : cells) {
       bool quarter = false;
@@ -70,7 +71,7 @@ class Matcher {
       faces.push_back(face);
     }
     for (const auto& [face, quarters] : parts_)
-      if (quarters.size() < 4) partial_.insert(partial_.end(), quarters.begin(), quarters.end());
+      if (quarters.size() < 4 && !chosen) partial_.insert(partial_.end(), quarters.begin(), quarters.end());
     report(partial_, static_cast<int>(cells.size()),
            "are parts of faces with mid nodes of which not all four are named");
     report(inside_, static_cast<int>(cells.size()), "lie between two elements, not on the boundary");
@@ -188,12 +189,13 @@ FaceSelection select_faces_on(const Record& record, const Body& body, const Mesh
                       [&](int node) { return in[static_cast<std::size_t>(node)]; }))
         cells.push_back(c);
     }
-    if (cells.empty())
+    FaceSelection selection{Matcher(record, body, surface, false).match(cells, true), false};
+    if (selection.faces.empty())
       refuse(record, fmt::format("no {} of mesh has all its corners among the nodes in indices", side_noun(body)));
-  } else {
-    check_sides(record, set, surface, body);
+    return selection;
   }
-  return {Matcher(record, body, surface, false).match(cells), set.kind != Indexed::nodes};
+  check_sides(record, set, surface, body);
+  return {Matcher(record, body, surface, false).match(cells), true};
 }
 
 }  // namespace msml::simulation

@@ -255,7 +255,6 @@ void run_arc_length(Run& run) {
   run.newton.rest();
   run.now.load_factor = 0;
   run.mark();
-  if (!run.accept()) return;
   for (std::size_t s = 0; s < model.steps.size(); ++s) {
     const Step& step = model.steps[s];
     EquilibriumPath path = begin_path(run, static_cast<int>(s));
@@ -269,7 +268,8 @@ void run_arc_length(Run& run) {
     };
     check_supports(run, path, step);
     run.now.load_factor = 0;
-    if (!settle(run, path)) return;
+    const bool settled = settle(run, path);
+    if ((s == 0 && !run.accept()) || !settled) return;  // the first state is the one that the loads find
     Arc arc{run, path,
             run.equations.has_followers() ? make_unsymmetric(model.settings.threads)
                                           : make_indefinite(model.settings.threads),

@@ -281,6 +281,7 @@ void run_implicit(Run& run) {
     const Supports supports = make_supports(step, run.equations.numbering(), run.now.u);
     if (s == 0) run.begin_motion(step, supports);
     if (s > 0) start_anew(run, supports);
+    if (s > 0) run.jump_with_supports(step, supports);
     run.begin_balance(step, supports);  // loads and supports may jump between steps, and the acceleration with them
     if (s == 0 && !run.sound_start()) return;
     run.mark();

@@ -87,7 +87,10 @@ void Run::check_balanced(const ScaledLoads& loads) const {
   if (free.modes.empty()) return;
   Forces forces;
   equations.evaluate_loads(Vector::Zero(equations.size()), loads, forces, nullptr);
-  const double size = forces.external.norm();
+  Vector weight;  // with a body force against it nothing may be left but round-off
+  const double gravity = model.steps[static_cast<std::size_t>(now.step)].gravity.norm();
+  multiply(equations.mass(), Vector::Constant(equations.size(), gravity), weight);
+  const double size = std::max(forces.external.norm(), weight.norm());
   for (const Vector& mode : free.modes)
     if (std::abs(dot(mode, forces.external)) > 1e-8 * size) {
       const Step& step = model.steps[static_cast<std::size_t>(now.step)];

@@ -51,9 +51,14 @@ struct Run {
   void hold(const Step& step, const Mask& fixed);
   /// Takes the initial velocity away from what the supports hold, and notes that.
   void hold_start(const Supports& supports);
+  /// Takes the present velocity away from what the supports hold.
+  void halt(const Supports& supports);
   /// Dynamics: the motion at the start of the first step is what the supports and incompressible regions make of the
   /// initial one; notes say what was changed. Throws Error where the initial one changes volumes that are kept.
   void begin_motion(const Step& step, const Supports& supports);
+  /// The same at later steps, whose supports may change their speed at once: where volumes are kept, all before them
+  /// follows. The supports' work is what the kinetic energy gains. Backward Euler has the jump within its step.
+  void jump_with_supports(const Step& step, const Supports& supports);
   /// The accelerations of the present state, and the pressures of incompressible regions with them.
   void begin_balance(const Step& step, const Supports& supports);
   /// Throws Error where a static step pushes what it does not hold, before anything runs.
@@ -87,6 +92,8 @@ struct Run {
  private:
   void measure_energies();
   void refuse_volume_changes();
+  /// 1 for the pressures that keep volumes in the present state, which is prepared; empty where none does.
+  Mask kept_volumes();
 };
 
 /// The way of loads and supports over a step, or a part of it, for equilibrium without inertia.

@@ -69,6 +69,15 @@ TEST(Formula, IsLeftToTheRunWhereItMaySuit) {
   EXPECT_EQ(never_allowed("t > 3.2 && t < 3.3 ? 1e-3 : -1", positive()), "");
   EXPECT_EQ(never_allowed("1e-12 - X^2 - Y^2 - Z^2", positive()), "");
   EXPECT_EQ(never_allowed("log(X - 123456)", {}), "");
+  // Finite in a small ball or box far from the origin.
+  EXPECT_EQ(never_allowed("sqrt(1-((X-37.3)^2+(Y-81.6)^2)/16)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(1-(X-105)^2-(Y-205)^2-(Z-305)^2)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(1-((X-120.5)/3)^2-((Y+45.25)/2.5)^2)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(1e-4-(X-.137)^2-(Y-.281)^2-(Z-1.42)^2)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(0.05^2-(X-.1)^2-(Y-.2)^2-(Z-.3)^2)", {}), "");
+  EXPECT_EQ(never_allowed("sqrt(0.01-(3*X-75-2)^2)", {}), "");
+  EXPECT_EQ(never_allowed("1000*((X-105)^2+(Y-205)^2<9)", positive()), "");
+  EXPECT_NE(never_allowed("-1000*(1 + X*X)", positive()), "");
   EXPECT_EQ(never_allowed("X +", {}), "");  // its fault is told elsewhere
 }
 

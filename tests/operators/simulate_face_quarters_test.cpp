@@ -26,29 +26,34 @@ TEST(SurfacePressureOnMesh, TakesFourTrianglesForAFaceOfAQuadraticElement) {
   surface->points = mesh->points;
   for (const auto& quarter : {std::array{0, 4, 6}, {4, 1, 5}, {6, 5, 2}, {4, 5, 6}})
     surface->add_cell(CellKind::tri3, quarter.data());
-  const auto load_of = [&](std::vector<int> cells) {
+  const auto load_of = [&](Indexed kind, std::vector<int> ids) {
     Scene scene = cube(language);
     scene.mesh_kind = "quadraticTet";
     scene.mesh = mesh;
     scene.regions = {region(language, "a", index_set(mesh, Indexed::elements, {0}))};
-    scene.constraints = {condition(language, "surfacePressureOnMesh",
-                                   {{"mesh", MeshPtr(surface)},
-                                    {"indices", index_set(surface, Indexed::faces, std::move(cells))},
-                                    {"pressure", Numbers{3}}})};
+    scene.constraints = {condition(
+        language, "surfacePressureOnMesh",
+        {{"mesh", MeshPtr(surface)}, {"indices", index_set(surface, kind, std::move(ids))}, {"pressure", Numbers{3}}})};
     Listener listener;
     return simulation::build_model(scene.record(language), listener, 1).model.steps.at(0).face_loads.at(0);
   };
-  const fe::FaceLoad load = load_of({0, 1, 2, 3});
+  const fe::FaceLoad load = load_of(Indexed::faces, {0, 1, 2, 3});
   ASSERT_EQ(load.faces.size(), 1U);
   EXPECT_THAT(simulation::face_nodes(*mesh, load.faces[0]), testing::UnorderedElementsAre(0, 1, 2, 4, 5, 6));
-  try {
-    load_of({0, 2, 3});
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(
-        error.str(),
-        testing::HasSubstr("3 of the 3 faces in indices are parts of faces with mid nodes of which not all four"));
-  }
+  EXPECT_EQ(load_of(Indexed::nodes, {0, 1, 2, 4, 5, 6}).faces.size(), 1U);
+  const auto refusal = [&](Indexed kind, const std::vector<int>& ids) {
+    try {
+      load_of(kind, ids);
+      return std::string("not refused");
+    } catch (const Error& error) {
+      return error.str();
+    }
+  };
+  EXPECT_THAT(
+      refusal(Indexed::faces, {0, 2, 3}),
+      testing::HasSubstr("3 of the 3 faces in indices are parts of faces with mid nodes of which not all four"));
+  EXPECT_THAT(refusal(Indexed::nodes, {0, 1, 4, 5, 6}),
+              testing::HasSubstr("no triangle of mesh has all its corners among the nodes in indices"));
 }
 
 }  // namespace

@@ -17,7 +17,8 @@ using namespace testing;
 Outcome follow(const Model& model, const std::function<void(const State&)>& check) {
   int seen = 0;
   const Outcome outcome = solve(model, [&](const State& state) {
-    if (state.increment > 0) check(state), ++seen;
+    check(state);
+    seen += state.increment > 0;
     return true;
   });
   EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;

@@ -41,6 +41,18 @@ TEST(FreeBody, UnderBalancedLoadsIsSolvedUpToARigidMotion) {
   }
 }
 
+// What is left of both is round-off, which pushes nowhere.
+TEST(FreeBody, IsSolvedWhereABodyForceTakesItsWeight) {
+  Model model = make_model(box_mesh(2, 2, 2, {1, 1, 1}, CellKind::tet4), {.youngs_modulus = 1000}, 3);
+  model.steps[0].gravity = Vec3(0, 0, -10.1);
+  BodyForce force{.name = "buoyancy", .value = Vec3(0, 0, 3 * 10.1)};
+  for (int cell = 0; cell < model.mesh->cell_count(); ++cell) force.elements.push_back(cell);
+  model.steps[0].body_forces = {force};
+  const Outcome outcome = solve(model, {});
+  ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  EXPECT_LT(outcome.state.displacement.norm(), 1e-10);
+}
+
 TEST(FreeBody, UnderLoadsThatPushItAwayIsRefused) {
   Model model = pulled_bar(Strain::small, 1000);
   model.steps[0].face_loads.pop_back();

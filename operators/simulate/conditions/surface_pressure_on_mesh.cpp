@@ -21,9 +21,10 @@ ConditionFactory surface_pressure_on_mesh() {
                       "four triangles through mid nodes, as ExtractSurfaceMesh makes them, are one face");
   add_common(tag, "triangle cells of that surface, or its nodes", Indexed::faces);
   const auto pressure = tag.parameter<Formulas>(
-      "pressure", {.unit = "stress",
-                   .doc = "one number or expression, one number per face, or three: a traction vector per reference "
-                          "area"});
+      "pressure",
+      {.unit = "stress",
+       .doc = "one number or expression, one number per face (four triangles of a face with mid nodes count "
+              "once, where the last of them is named), or three: a traction vector per reference area"});
   const auto table = add_table(tag);
   tag.parameter<std::string>("pulse", {.optional = true, .check = no_pulse, .doc = "not available yet"});
   const auto follower = tag.parameter<bool>("follower", {.optional = true, .doc = "as in surfacePressure"});
