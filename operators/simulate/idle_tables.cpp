@@ -9,12 +9,6 @@
 namespace msml::simulation {
 namespace {
 
-template <class T>
-const T* value_of(const Record& record, const char* attribute) {
-  const int slot = record.description->find(attribute);
-  return slot < 0 ? nullptr : std::get_if<T>(&record.values[static_cast<std::size_t>(slot)]);
-}
-
 /// When each step starts, and when the last one ends; empty if a length is not known.
 std::vector<double> times_of(const std::vector<const Record*>& steps) {
   std::vector<double> times{0};

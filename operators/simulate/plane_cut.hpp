@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Elements cut by a plane in the reference configuration.
 #pragma once
+#include <Eigen/LU>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "msml/core/mesh.hpp"
@@ -20,6 +22,31 @@ struct CuttingPlane {
 using Barycentric = std::array<double, 4>;
 /// A simplex inside an element, by as many corners as the element has.
 using Part = std::array<Barycentric, 4>;
+
+/// From the coordinates of the unit simplex to those of an element's, onto a part of it.
+template <int dimension>
+class PartMap {
+ public:
+  explicit PartMap(const Part& part) : part_(part) {
+    for (std::size_t i = 0; i < dimension; ++i)
+      for (std::size_t d = 0; d < dimension; ++d)
+        edges_(static_cast<int>(i), static_cast<int>(d)) = part[i + 1][d + 1] - part[0][d + 1];
+  }
+  /// Of the part beside the whole element.
+  double size() const { return std::abs(edges_.determinant()); }
+  std::array<double, dimension> at(const std::array<double, dimension>& xi) const {
+    std::array<double, dimension> place;
+    for (std::size_t d = 0; d < dimension; ++d) {
+      place[d] = part_[0][d + 1];
+      for (std::size_t i = 0; i < dimension; ++i) place[d] += xi[i] * edges_(static_cast<int>(i), static_cast<int>(d));
+    }
+    return place;
+  }
+
+ private:
+  const Part& part_;
+  Eigen::Matrix<double, dimension, dimension> edges_;
+};
 
 /// Where all of an element lies. What is on the plane counts to the side of the normal.
 enum class PlaneSide { below, above, both };

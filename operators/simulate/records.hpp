@@ -39,6 +39,13 @@ Result make(const Record& record) {
   return factory->make(record);
 }
 
+/// The value of an attribute by its name; null if the tag has none of this name, or it is of another type.
+template <class T>
+const T* value_of(const Record& record, const char* attribute) {
+  const int slot = record.description->find(attribute);
+  return slot < 0 ? nullptr : std::get_if<T>(&record.values[static_cast<std::size_t>(slot)]);
+}
+
 /// "1 element", "12 elements".
 std::string counted(long long count, const std::string& noun);
 

@@ -47,17 +47,10 @@ template <int dimension, int nodes>
 void add_part(const Place& face, const FacePull& pull, const Part& part, double sign, const double* weights,
               const Vec3& centre, Pull& sum) {
   static const fe::Rule<dimension> rule = fe::rule_of_size<dimension>(3);
-  Eigen::Matrix<double, dimension, dimension> edges;
-  for (std::size_t i = 0; i < dimension; ++i)
-    for (std::size_t d = 0; d < dimension; ++d)
-      edges(static_cast<int>(i), static_cast<int>(d)) = part[i + 1][d + 1] - part[0][d + 1];
-  const double size = sign * std::abs(edges.determinant());
+  const PartMap<dimension> map(part);
+  const double size = sign * map.size();
   for (const auto& q : rule) {
-    std::array<double, dimension> xi;
-    for (std::size_t d = 0; d < dimension; ++d) {
-      xi[d] = part[0][d + 1];
-      for (std::size_t i = 0; i < dimension; ++i) xi[d] += q.xi[i] * edges(static_cast<int>(i), static_cast<int>(d));
-    }
+    const auto xi = map.at(q.xi);
     const auto N = fe::Simplex<dimension, nodes>::values(xi);
     const auto g = fe::Simplex<dimension, nodes>::gradients(xi);
     Vec3 X = Vec3::Zero(), r = Vec3::Zero(), s = Vec3::Zero(), arm = Vec3::Zero();

@@ -35,17 +35,10 @@ class ElementShare {
   void add(const Part& part, double sign, fe::ElementMass<nodes>& mass, fe::ElementMass<nodes>& volume) const {
     // N_a N_b is of degree 4 in quadratic elements; parts of curved ones are many and small.
     static const fe::Rule<dimension> rule = fe::rule_of_size<dimension>(nodes > dimension + 1 ? 3 : 2);
-    Eigen::Matrix<double, dimension, dimension> edges;
-    for (std::size_t i = 0; i < dimension; ++i)
-      for (std::size_t d = 0; d < dimension; ++d)
-        edges(static_cast<int>(i), static_cast<int>(d)) = part[i + 1][d + 1] - part[0][d + 1];
-    const double size = std::abs(edges.determinant());
+    const PartMap<dimension> map(part);
+    const double size = map.size();
     for (const auto& q : rule) {
-      std::array<double, dimension> xi;
-      for (std::size_t d = 0; d < dimension; ++d) {
-        xi[d] = part[0][d + 1];
-        for (std::size_t i = 0; i < dimension; ++i) xi[d] += q.xi[i] * edges(static_cast<int>(i), static_cast<int>(d));
-      }
+      const auto xi = map.at(q.xi);
       const auto N = fe::Simplex<dimension, nodes>::values(xi);
       const double weight =
           sign * thickness_ * size * q.weight * fe::jacobian<dimension, nodes>(points_, ids_, xi).determinant();

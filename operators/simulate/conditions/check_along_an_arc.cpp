@@ -8,12 +8,6 @@
 namespace msml::simulation {
 namespace {
 
-template <class T>
-const T* value_of(const Record& record, const char* attribute) {
-  const int slot = record.description->find(attribute);
-  return slot < 0 ? nullptr : std::get_if<T>(&record.values[static_cast<std::size_t>(slot)]);
-}
-
 bool zero(const Formula& formula) { return formula.constant() && formula.number == 0; }
 bool timed(const Formula& formula) { return !formula.constant() && examine(formula.text).of_time; }
 
