@@ -153,8 +153,8 @@ Trial try_step(Stage& stage, double time, const Forces& start_forces, bool dampe
     trial.result.stop = run.newton.state_verdict();
     // One linear solve leaves a residual; one far beyond all forces is no answer to go on from.
     const double left = free_norm(run.newton.residual(trial.increment), stage.supports.fixed);
-    const double all = std::max(trial.result.scale, support_force(run, trial));
-    if (trial.result.stop == Stop::converged && left > 1e6 * all) trial.result.stop = Stop::diverged;
+    const bool far = left > 1e6 * trial.result.scale && left > 1e6 * support_force(run, trial);
+    if (trial.result.stop == Stop::converged && far) trial.result.stop = Stop::diverged;
   }
   return trial;
 }
