@@ -73,8 +73,9 @@ TEST(Newton, LargeForcesElsewhereDoNotHideLoadsThatGrow) {
   model.steps[0].count = 10;
   model.steps[0].forces[1].factor = TimeFunction([](double t) { return t; });
   const Outcome outcome = solve(model, [&](const State& state) {
-    if (state.increment > 0)
+    if (state.increment > 0) {
       EXPECT_NEAR(state.displacement(1, 2), pulled({1, 0.5, {0, 0, state.time}}), 1e-7) << state.time;
+    }
     return true;
   });
   ASSERT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
