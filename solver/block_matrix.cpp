@@ -150,17 +150,23 @@ void multiply_last_row(const BlockMatrix& A, int first, int last, const double* 
 
 }  // namespace
 
-void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
+void multiply(const BlockMatrix& A, int first, int last, const Vector& x, Vector& y) {
   const Pattern& pattern = *A.pattern;
-  y.resize(x.size());
   const int end = pattern.nodes() - 1;
-  for_rows(pattern.nodes(), [&](int r) {
-    const int first = pattern.offsets[static_cast<std::size_t>(r)];
-    const int last = pattern.offsets[static_cast<std::size_t>(r) + 1];
-    if (pattern.columns[static_cast<std::size_t>(last) - 1] == end)
-      multiply_last_row(A, first, last, x.data(), y.data() + 3 * r);
+  for (int r = first; r < last; ++r) {
+    const int begin = pattern.offsets[static_cast<std::size_t>(r)];
+    const int stop = pattern.offsets[static_cast<std::size_t>(r) + 1];
+    if (pattern.columns[static_cast<std::size_t>(stop) - 1] == end)
+      multiply_last_row(A, begin, stop, x.data(), y.data() + 3 * r);
     else
-      multiply_row(A, first, last, x.data(), y.data() + 3 * r);
+      multiply_row(A, begin, stop, x.data(), y.data() + 3 * r);
+  }
+}
+
+void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
+  y.resize(x.size());
+  tbb::parallel_for(tbb::blocked_range<int>(0, A.pattern->nodes(), 256), [&](const tbb::blocked_range<int>& range) {
+    multiply(A, range.begin(), range.end(), x, y);
   });
 }
 
@@ -192,12 +198,12 @@ void add(BlockMatrix& A, double s, const BlockMatrix& B) {
 }
 
 double dot(const Vector& x, const Vector& y) {
-  constexpr Eigen::Index piece = 4096;
-  const Eigen::Index pieces = (x.size() + piece - 1) / piece;
-  std::vector<double> sums(static_cast<std::size_t>(pieces));
-  tbb::parallel_for(Eigen::Index(0), pieces, [&](Eigen::Index k) {
-    const Eigen::Index length = std::min(piece, x.size() - k * piece);
-    sums[static_cast<std::size_t>(k)] = x.segment(k * piece, length).dot(y.segment(k * piece, length));
+  constexpr Eigen::Index piece = 8192;
+  if (x.size() <= piece) return x.dot(y);
+  std::vector<double> sums(static_cast<std::size_t>((x.size() + piece - 1) / piece));
+  tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * piece, length = std::min(piece, x.size() - first);
+    sums[k] = x.segment(first, length).dot(y.segment(first, length));
   });
   double sum = 0;
   for (const double s : sums) sum += s;

@@ -47,6 +47,8 @@ struct BlockMatrix {
 
 /// y = A x, in parallel over rows; the result does not depend on the number of threads.
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y);
+/// The rows of nodes [first, last) alone; y has its size already.
+void multiply(const BlockMatrix& A, int first, int last, const Vector& x, Vector& y);
 void multiply(const ScalarMatrix& A, const Vector& x, Vector& y);
 
 /// A += s M on every block's diagonal.

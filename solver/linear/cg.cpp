@@ -4,51 +4,66 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace msml::fe {
 
-void zero_fixed(const Mask& fixed, Vector& v) {
-  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, v.size(), 8192), [&](const auto& range) {
-    for (Eigen::Index k = range.begin(); k < range.end(); ++k)
-      if (fixed[static_cast<std::size_t>(k)]) v[k] = 0;
+namespace {
+
+constexpr Eigen::Index piece = 6144;  // unknowns of one sum: pieces of fixed size, whatever the number of threads
+
+/// The sum of body(first, last) over all pieces of [0, size).
+template <class Body>
+double sum_pieces(Eigen::Index size, const Body& body) {
+  if (size <= piece) return body(0, size);
+  std::vector<double> sums(static_cast<std::size_t>((size + piece - 1) / piece));
+  tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t k) {
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * piece;
+    sums[k] = body(first, std::min(size, first + piece));
+  });
+  return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// q = A p at free unknowns, 0 at fixed ones; returns p . q.
+double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, Vector& q) {
+  return sum_pieces(p.size(), [&](Eigen::Index first, Eigen::Index last) {
+    multiply(A, static_cast<int>(first / 3), static_cast<int>(last / 3), p, q);
+    for (Eigen::Index k = first; k < last; ++k)
+      if (fixed[static_cast<std::size_t>(k)]) q[k] = 0;
+    return p.segment(first, last - first).dot(q.segment(first, last - first));
   });
 }
 
-void start_near(const BlockMatrix& A, const Mask& fixed, const Vector& b, const Vector& guess, Vector& r, Vector& x) {
-  r = b;
-  x = Vector::Zero(b.size());
-  if (guess.size() != b.size()) return;
-  Vector p = guess, q;
-  zero_fixed(fixed, p);
-  multiply(A, p, q);
-  zero_fixed(fixed, q);
-  const double curvature = dot(p, q), share = dot(p, b) / curvature;
-  if (!(curvature > 0) || !std::isfinite(share)) return;
-  x = share * p;
-  r -= share * q;
-}
+}  // namespace
 
 LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
                                  long limit, CgSpace& space, Vector& r, Vector& x, long& taken) {
   auto& [z, p, q] = space;
   z.resize(r.size());
+  q.resize(r.size());
   p = Vector::Zero(r.size());
   double rho_before = 1, size = std::sqrt(dot(r, r));
   while (taken < limit) {
     B(r, size, z);
     const double rho = dot(r, z);
     if (!(rho > 0)) return LinearStatus::not_positive_definite;
-    p = z + (rho / rho_before) * p;
+    sum_pieces(p.size(), [&, beta = rho / rho_before](Eigen::Index first, Eigen::Index last) {
+      const Eigen::Index count = last - first;
+      p.segment(first, count) = z.segment(first, count) + beta * p.segment(first, count);
+      return 0;
+    });
     rho_before = rho;
-    multiply(A, p, q);
-    zero_fixed(fixed, q);
-    const double curvature = dot(p, q);
+    const double curvature = multiply_free(A, fixed, p, q);
     if (!(curvature > 0)) return LinearStatus::not_positive_definite;
-    x += (rho / curvature) * p;
-    r -= (rho / curvature) * q;
+    size = std::sqrt(sum_pieces(p.size(), [&, alpha = rho / curvature](Eigen::Index first, Eigen::Index last) {
+      const Eigen::Index count = last - first;
+      x.segment(first, count) += alpha * p.segment(first, count);
+      r.segment(first, count) -= alpha * q.segment(first, count);
+      return r.segment(first, count).squaredNorm();
+    }));
     ++taken;
-    size = std::sqrt(dot(r, r));
     if (size <= target) return LinearStatus::done;
   }
   return LinearStatus::limit;

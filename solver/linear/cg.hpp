@@ -3,7 +3,7 @@
 #pragma once
 #include <functional>
 
-#include "solver/linear/linear_system.hpp"
+#include "solver/linear/guesses.hpp"
 
 namespace msml::fe {
 
@@ -14,13 +14,6 @@ using Preconditioning = std::function<void(const Vector& r, double size, Vector&
 struct CgSpace {
   Vector z, p, q;
 };
-
-/// v = 0 at fixed unknowns.
-void zero_fixed(const Mask& fixed, Vector& v);
-
-/// x = the multiple of `guess` (any size but that of b: none) that is nearest to the solution of A x = b in the norm of
-/// A, r = b - A x; both 0 at fixed unknowns, as b is.
-void start_near(const BlockMatrix& A, const Mask& fixed, const Vector& b, const Vector& guess, Vector& r, Vector& x);
 
 /// Adds to x until the recurrence of the residual r = b - A x says that it is below target, at most `limit` times
 /// (Hestenes and Stiefel 1952, doi 10.6028/jres.049.044). `taken` counts. not_positive_definite where A or B shows it.

@@ -7,7 +7,6 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "solver/linear/cg.hpp"
 
@@ -42,7 +41,7 @@ class ConjugateGradient final : public LinearSystem {
     Vector b = right;
     zero_fixed(fixed_, b);
     Vector r;
-    start_near(*matrix_, fixed_, b, std::exchange(guess_, {}), r, x);
+    guesses_.start(*matrix_, fixed_, b, r, x);
     const double target = tolerance * std::sqrt(dot(b, b));
     long limit = std::clamp<long>(10 * b.size(), 1000, 50000);
     double size = std::sqrt(dot(r, r));
@@ -61,13 +60,14 @@ class ConjugateGradient final : public LinearSystem {
       if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
       if (size > target && size > 0.5 * before) return LinearStatus::limit;
     }
+    guesses_.keep(x);
     return LinearStatus::done;
   }
 
-  void expect(const Vector& solution) override { guess_ = solution; }
+  void expect(const Vector& solution) override { guesses_.expect(solution); }
   bool iterative() const override { return true; }
   std::size_t factor_bytes() const override {
-    return inverse_.size() * sizeof(double) +
+    return guesses_.bytes() + inverse_.size() * sizeof(double) +
            static_cast<std::size_t>(incomplete_.matrixL().nonZeros()) * (sizeof(double) + sizeof(int));
   }
 
@@ -128,7 +128,7 @@ class ConjugateGradient final : public LinearSystem {
   Mask fixed_;
   LowerTriangle lower_;
   CgSpace space_;
-  Vector guess_;
+  Guesses guesses_;
   std::vector<double> inverse_;  ///< 9 per node
   Eigen::IncompleteCholesky<double, Eigen::Lower, Eigen::NaturalOrdering<int>> incomplete_;
 };

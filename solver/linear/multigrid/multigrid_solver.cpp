@@ -3,7 +3,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <utility>
 
 #include "solver/linear/cg.hpp"
 #include "solver/linear/multigrid/multigrid.hpp"
@@ -24,7 +23,7 @@ class MultigridSolver final : public LinearSystem {
       : geometry_(geometry), grids_(geometry, pulse), pulse_(std::move(pulse)) {}
 
   void place(const Vector& displacement) override { displacement_ = displacement; }
-  void expect(const Vector& solution) override { guess_ = solution; }
+  void expect(const Vector& solution) override { guesses_.expect(solution); }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
     matrix_ = &A;
@@ -39,7 +38,7 @@ class MultigridSolver final : public LinearSystem {
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     b_ = right;
     zero_fixed(fixed_, b_);
-    start_near(*matrix_, fixed_, b_, std::exchange(guess_, {}), r_, x);
+    guesses_.start(*matrix_, fixed_, b_, r_, x);
     const double target = tolerance * std::sqrt(dot(b_, b_));
     double size = std::sqrt(dot(r_, r_)), before = std::numeric_limits<double>::infinity();
     while (size > target) {
@@ -68,6 +67,7 @@ class MultigridSolver final : public LinearSystem {
         return size <= round_off(x) ? LinearStatus::done : LinearStatus::limit;
       before = size;
     }
+    guesses_.keep(x);
     return LinearStatus::done;
   }
 
@@ -81,7 +81,7 @@ class MultigridSolver final : public LinearSystem {
 
   bool iterative() const override { return true; }
   std::size_t factor_bytes() const override {
-    std::size_t sum = grids_.bytes() + 2 * geometry_.ends.size() * sizeof(geometry_.ends[0]) + fixed_.size();
+    std::size_t sum = grids_.bytes() + guesses_.bytes() + 2 * geometry_.ends.size() * sizeof(geometry_.ends[0]) + fixed_.size();
     for (const Vector* v : {&geometry_.positions, &geometry_.positions, &displacement_, &reference_, &b_, &r_,
                             &space_.z, &space_.p, &space_.q})
       sum += bytes(*v);
@@ -164,7 +164,8 @@ class MultigridSolver final : public LinearSystem {
   double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve after the last set-up
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
-  Vector b_, r_, guess_;
+  Vector b_, r_;
+  Guesses guesses_;
   CgSpace space_;
   std::vector<float> single_r_, single_z_;
 };

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Projection of a right-hand side on the images of a few vectors.
+#include "solver/linear/guesses.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Eigenvalues>
+#include <cstring>
+#include <utility>
+
+namespace msml::fe {
+namespace {
+
+constexpr int piece = 1024;  // rows of one sum
+
+using Eight = double __attribute__((vector_size(64)));
+
+template <class Group>
+Eight eight(const Group& from) {
+  static_assert(sizeof(Group) == sizeof(Eight));
+  Eight values;
+  std::memcpy(&values, &from, sizeof values);
+  return values;
+}
+
+using Square = Eigen::Matrix<double, 8, 8>;
+using Few = Eigen::Matrix<double, 8, 1>;
+
+/// X^T A X and X^T b.
+struct Projected {
+  Eight energies[8] = {}, works = {};
+  Projected& operator+=(const Projected& other) {
+    for (int i = 0; i < 8; ++i) energies[i] += other.energies[i];
+    works += other.works;
+    return *this;
+  }
+};
+
+/// The coefficients c with X^T A X c = X^T b, without directions that round-off makes of dependent vectors.
+Eight coefficients(const Projected& sum) {
+  constexpr double dependent = 1e-12;
+  Square G;
+  Few w, scale;
+  for (int i = 0; i < 8; ++i) scale[i] = sum.energies[i][i] > 0 ? 1 / std::sqrt(sum.energies[i][i]) : 0;
+  for (int i = 0; i < 8; ++i) {
+    w[i] = scale[i] * sum.works[i];
+    for (int j = 0; j < 8; ++j) G(i, j) = scale[i] * scale[j] * sum.energies[i][j];
+  }
+  if (!G.allFinite() || !w.allFinite()) return Eight{};
+  const Eigen::SelfAdjointEigenSolver<Square> modes(G);
+  Few shares = modes.eigenvectors().transpose() * w;
+  for (int k = 0; k < 8; ++k) shares[k] *= modes.eigenvalues()[k] > dependent ? 1 / modes.eigenvalues()[k] : 0;
+  const Few c = scale.cwiseProduct(modes.eigenvectors() * shares);
+  return c.allFinite() ? Eight{c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]} : Eight{};
+}
+
+double sum_of(const Eight& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
+
+}  // namespace
+
+void zero_fixed(const Mask& fixed, Vector& v) {
+  tbb::parallel_for(tbb::blocked_range<Eigen::Index>(0, v.size(), 8192), [&](const auto& range) {
+    for (Eigen::Index k = range.begin(); k < range.end(); ++k)
+      if (fixed[static_cast<std::size_t>(k)]) v[k] = 0;
+  });
+}
+
+void Guesses::expect(const Vector& likely) {
+  expected_ = likely.size() > 0;
+  if (!expected_) return;
+  const auto size = static_cast<std::size_t>(likely.size());
+  if (span_.size() != size) span_.assign(size, {});
+  image_.resize(size);
+  for (std::size_t k = 0; k < size; ++k) span_[k][0] = likely[static_cast<Eigen::Index>(k)];
+}
+
+void Guesses::start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x) {
+  started_ = std::exchange(expected_, false) && span_.size() == static_cast<std::size_t>(b.size());
+  r = b;
+  x = Vector::Zero(b.size());
+  if (!started_) return;
+  const Pattern& pattern = *A.pattern;
+  const int rows = pattern.nodes(), pieces = (rows + piece - 1) / piece;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, span_.size(), 8192), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k)
+      if (fixed[k]) span_[k] = {};
+  });
+  std::vector<Projected> parts(static_cast<std::size_t>(pieces));
+  tbb::parallel_for(0, pieces, [&](int k) {
+    Projected sum;
+    for (int row = k * piece; row < std::min(rows, (k + 1) * piece); ++row) {
+      Eight image[3] = {};
+      for (int p = pattern.offsets[static_cast<std::size_t>(row)];
+           p < pattern.offsets[static_cast<std::size_t>(row) + 1]; ++p) {
+        const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
+        const Group* v = &span_[3 * static_cast<std::size_t>(pattern.columns[static_cast<std::size_t>(p)])];
+        for (int i = 0; i < 3; ++i)
+          image[i] += a[3 * i] * eight(v[0]) + a[3 * i + 1] * eight(v[1]) + a[3 * i + 2] * eight(v[2]);
+      }
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t unknown = 3 * static_cast<std::size_t>(row) + i;
+        if (fixed[unknown]) image[i] = Eight{};
+        std::memcpy(&image_[unknown], &image[i], sizeof(Eight));
+        const Eight own = eight(span_[unknown]);
+        for (std::size_t j = 0; j < most; ++j) sum.energies[j] += span_[unknown][j] * image[i];
+        sum.works += b[static_cast<Eigen::Index>(unknown)] * own;
+      }
+    }
+    parts[static_cast<std::size_t>(k)] = sum;
+  });
+  Projected sum;
+  for (const Projected& part : parts) sum += part;
+  const Eight c = coefficients(sum);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, span_.size(), 4096), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+      x[static_cast<Eigen::Index>(k)] = sum_of(c * eight(span_[k]));
+      r[static_cast<Eigen::Index>(k)] -= sum_of(c * eight(image_[k]));
+    }
+  });
+}
+
+void Guesses::keep(const Vector& x) {
+  if (!std::exchange(started_, false)) return;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, span_.size(), 4096), [&](const auto& range) {
+    for (std::size_t k = range.begin(); k < range.end(); ++k) {
+      Group& group = span_[k];
+      for (std::size_t j = most - 1; j > 1; --j) group[j] = group[j - 1];
+      group[1] = x[static_cast<Eigen::Index>(k)];
+    }
+  });
+}
+
+}  // namespace msml::fe

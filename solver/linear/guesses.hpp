@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where iterative solutions start.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "solver/linear/linear_system.hpp"
+
+namespace msml::fe {
+
+/// v = 0 at fixed unknowns.
+void zero_fixed(const Mask& fixed, Vector& v);
+
+/// The solutions of a few time steps, in whose span that of the next one nearly is (Fischer 1998,
+/// doi 10.1016/S0045-7825(98)00012-7): a motion with two frequencies is met exactly.
+class Guesses {
+ public:
+  /// A vector that the next solution is likely near a multiple of.
+  void expect(const Vector& likely);
+  /// x = the sum of multiples of the expected vector and the solutions kept that is nearest to the solution of A x = b
+  /// in the norm of A, r = b - A x; both 0 at fixed unknowns, as b is. Zero where nothing was expected.
+  void start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x);
+  /// The solution of the system that start() was called for: kept if something was expected of it.
+  void keep(const Vector& x);
+  std::size_t bytes() const { return (span_.size() + image_.size()) * sizeof(double); }
+
+ private:
+  static constexpr std::size_t most = 8;
+  using Group = std::array<double, most>;  ///< of one unknown: the expected vector, then solutions from new to old
+
+  std::vector<Group> span_, image_;  ///< and A times these
+  bool expected_ = false, started_ = false;
+};
+
+}  // namespace msml::fe
