@@ -67,7 +67,6 @@ double Equations::total_mass() const {
 void Equations::evaluate(const Vector& u, const ScaledLoads& loads, Want want, Forces& forces, BlockMatrix* tangent,
                          BlockMatrix* followers) const {
   forces.internal = Vector::Zero(size());
-  if (tangent) tangent->set_zero();
   forces.found = elements_->add_internal(u, want, forces.internal, tangent);
   for (const ActingLoads& acting : loads)
     if (!acting.leaving)

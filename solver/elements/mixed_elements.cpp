@@ -243,6 +243,7 @@ Assembled MixedElements<points>::add_batch(const Batch& batch, const Vector& u, 
 
 template <int points>
 Assembled MixedElements<points>::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+  if (matrix) matrix->set_zero();
   return add_by_colour(colours_, [&](std::size_t b) {
     if (matrix) fetch_blocks(batches_[b], *matrix);
     return add_batch(batches_[b], u, want, force, matrix);

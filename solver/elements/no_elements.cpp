@@ -9,7 +9,10 @@ class NoElements final : public Elements {
  public:
   explicit NoElements(const Model& model)
       : numbering_(number(model)), pattern_(make_pattern(numbering_.nodes(), {}, 1, numbering_.links)) {}
-  Assembled add_internal(const Vector&, Want, Vector&, BlockMatrix*) const override { return {}; }
+  Assembled add_internal(const Vector&, Want, Vector&, BlockMatrix* matrix) const override {
+    if (matrix) matrix->set_zero();
+    return {};
+  }
   void add_mass(bool, ScalarMatrix&) const override {}
   std::size_t bytes() const override { return numbering_.bytes(); }
   void visit_points(const Vector&, const PointsVisitor&) const override {}

@@ -217,6 +217,7 @@ Assembled PatchElements::add_patch(const Patch& patch, const Vector& u, Want wan
 }
 
 Assembled PatchElements::add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+  if (matrix) matrix->set_zero();
   return add_by_colour(colours_, [&](std::size_t p) { return add_patch(patches_[p], u, want, force, matrix); });
 }
 

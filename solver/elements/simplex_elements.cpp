@@ -167,8 +167,63 @@ void fetch(const Batch& batch, bool positions) {
 }
 
 template <int dimension, int nodes, int count>
+bool SimplexElements<dimension, nodes, count>::rotated(Want want) const {
+  return dimension == 3 && nodes == 4 && std::all_of(batches_.begin(), batches_.end(), [&](const Batch& batch) {
+           return batch.history.empty() && batch.laws.laws.front()->evaluate_rotated(want, {}, {});
+         });
+}
+
+/// h_a = sqrt(w mu) R g_a of the first lanes.
+void put_rotated(const RotatedResponse& response, Lanes w, const Lanes (&g)[4][3], int first, int last,
+                 RotatedTetrahedron* elements) {
+  const Lanes size = root(w * response.mu);
+  Lanes entries[16] = {};
+  for (int a = 0; a < 4; ++a)
+    for (int i = 0; i < 3; ++i) entries[4 * a + i] = size * inner<3>(response.R.c + 3 * i, g[a]);
+  entries[3] = response.lambda / response.mu;
+  for (int half = 0; half < 2; ++half) {
+    Lanes* of_lane = entries + 8 * half;
+    transpose(*reinterpret_cast<Lanes(*)[lanes]>(of_lane));
+    for (int e = first; e < last; ++e)
+      std::memcpy(&elements[e].h[2 * half][0], &of_lane[e - first], sizeof(Lanes));
+  }
+}
+
+template <int dimension, int nodes, int count>
+Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
+                                                                BlockMatrix& matrix) const {
+  if (!rows_) rows_.emplace(pattern_, numbering_.element_nodes);
+  rotated_.resize(numbering_.elements.size());
+  const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
+    const Batch& batch = batches_[b];
+    if (b + 1 < batches_.size()) fetch(batches_[b + 1], false);
+    const Gradients H = gradient(batch, 0, gather_nodes<dimension, nodes>(batch, u));
+    RotatedResponse response;
+    batch.laws.laws.front()->evaluate_rotated(want, {&H, 1}, {&response, 1});
+    const Lanes w = batch.points[0].weight;
+    SimplexResult<dimension, nodes> result;
+    std::fill_n(&result.force[0][0], nodes * dimension, Lanes{});
+    add_force<dimension, nodes>(response.P, w, batch.inverse(0), reference_gradients_[0], result);
+    scatter_force(batch, result, force);
+    ShapeGradients g;
+    shape_gradients(batch, 0, g);
+    if constexpr (dimension == 3 && nodes == 4)
+      put_rotated(response, w, g.g, batch.first, batch.first + batch.count, rotated_.data());
+    Notes notes;
+    notes.add(w * response.energy, volume_ratio(H));
+    Assembled part;
+    notes.tell(batch.count, numbering_.elements.data() + batch.first, part);
+    return part;
+  });
+  rows_->sum(rotated_, matrix);
+  return found;
+}
+
+template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
+  if (matrix && rotated(want)) return add_rotated(u, want, force, *matrix);
+  if (matrix) matrix->set_zero();
   return add_by_colour(colours_, [&](std::size_t b) {
     if (matrix) fetch_blocks(batches_[b], *matrix);
     if (b + 1 < batches_.size()) fetch(batches_[b + 1], matrix != nullptr);
@@ -220,7 +275,8 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
 
 template <int dimension, int nodes, int count>
 std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
-  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch);
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) + (rows_ ? rows_->bytes() : 0) +
+                    rotated_.size() * sizeof(rotated_[0]);
   for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
   return sum;
 }

@@ -6,6 +6,7 @@
 #include "solver/elements/mass.hpp"
 #include "solver/elements/prony_history.hpp"
 #include "solver/elements/region_laws.hpp"
+#include "solver/elements/rotated_rows.hpp"
 #include "solver/elements/shapes.hpp"
 #include "solver/elements/simplex_kernels.hpp"
 
@@ -63,6 +64,8 @@ class SimplexElements final : public Elements {
   void fill(Batch& batch, const Model& model) const;
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
+  bool rotated(Want want) const;
+  Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
 
   Numbering numbering_;
   PatternPtr pattern_;
@@ -71,6 +74,8 @@ class SimplexElements final : public Elements {
   bool stored_energies_ = true;
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
+  mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made when first asked for
+  mutable std::vector<RotatedTetrahedron> rotated_;
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
 };
 

@@ -33,16 +33,9 @@ class SingleRotationElements final : public Elements {
   }
 
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
-    Assembled sum;
-    for (const auto& chunks : standard_.colours()) {
-      std::vector<Assembled> parts(chunks.size());
-      tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-        for (int b = chunks[c].first; b < chunks[c].last; ++b)
-          merge(parts[c], add_batch(static_cast<std::size_t>(b), u, want, force, matrix));
-      });
-      for (const Assembled& part : parts) merge(sum, part);
-    }
-    return sum;
+    if (matrix) matrix->set_zero();
+    return add_by_colour(standard_.colours(),
+                         [&](std::size_t b) { return add_batch(b, u, want, force, matrix); });
   }
 
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }

@@ -24,6 +24,13 @@ struct ResponseOf {
 };
 using Response = ResponseOf<Lanes>;
 
+/// The same where the tangent is that of Hooke's law turned by a rotation R (I in small strain): dP_ik/dF_jl =
+/// mu (d_ij d_kl + R_il R_jk) + lambda R_ik R_jl.
+struct RotatedResponse {
+  Lanes energy, mu, lambda;
+  Tensor<Lanes> P, R;
+};
+
 /// What of a Response is wanted; energy and stress always. `tangent` is the law's own choice for Newton's method,
 /// `single_tangent` its choice where each step has one linear solve, `definite_tangent` a positive semidefinite
 /// replacement for Newton steps where the exact one is indefinite.
@@ -54,6 +61,11 @@ class Law {
   virtual ~Law() = default;
   /// Fills responses[i] from gradients[i]; both have the same length.
   virtual void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const = 0;
+  /// False where the tangent of `want` does not have this form; otherwise fills responses[i] from gradients[i].
+  virtual bool evaluate_rotated(Want /*want*/, std::span<const Gradients> /*gradients*/,
+                                std::span<RotatedResponse> /*responses*/) const {
+    return false;
+  }
   /// Fills measures[i] from gradients[i].
   virtual void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const = 0;
   virtual std::string name() const = 0;      ///< the tag of the language

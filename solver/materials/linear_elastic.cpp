@@ -91,6 +91,17 @@ class LinearLaw final : public Law {
         corotated(want, gradients[i], responses[i]);
   }
 
+  bool evaluate_rotated(Want want, std::span<const Gradients> gradients,
+                        std::span<RotatedResponse> responses) const override {
+    if (want == Want::stress || data_.strain == Strain::small || wants_exact(data_, want)) return false;
+    for (std::size_t i = 0; i < gradients.size(); ++i) {
+      const auto [R, strain] = decompose(gradients[i]);
+      const Tensor<Lanes> stress = hooke(lame_, strain);
+      responses[i] = {0.5 * contract(stress, strain), lame_.mu, lame_.lambda, product(R, stress), R};
+    }
+    return true;
+  }
+
   void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       Measures& out = measures[i];
