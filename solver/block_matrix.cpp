@@ -2,10 +2,10 @@
 // Products and sums of block matrices in parallel.
 #include "solver/block_matrix.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstring>
+
+#include "solver/pieces.hpp"
 
 namespace msml::fe {
 namespace {
@@ -198,16 +198,9 @@ void add(BlockMatrix& A, double s, const BlockMatrix& B) {
 }
 
 double dot(const Vector& x, const Vector& y) {
-  constexpr Eigen::Index piece = 8192;
-  if (x.size() <= piece) return x.dot(y);
-  std::vector<double> sums(static_cast<std::size_t>((x.size() + piece - 1) / piece));
-  tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t k) {
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * piece, length = std::min(piece, x.size() - first);
-    sums[k] = x.segment(first, length).dot(y.segment(first, length));
+  return sum_pieces(x.size(), [&](long first, long last) {
+    return x.segment(first, last - first).dot(y.segment(first, last - first));
   });
-  double sum = 0;
-  for (const double s : sums) sum += s;
-  return sum;
 }
 
 }  // namespace msml::fe

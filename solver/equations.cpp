@@ -4,26 +4,37 @@
 
 #include <algorithm>
 
+#include "solver/pieces.hpp"
+
 namespace msml::fe {
 
 Vector Kinematics::velocity_at(const Vector& u) const {
   if (!dynamic()) return Vector::Zero(u.size());
-  Vector v = velocity_factor * (u - start) + velocity;
-  for (std::size_t k = 0; k < fixed.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (fixed[k]) v[i] = !given.empty() && given[k] ? given_velocity[i] : (u[i] - start[i]) / dt;
-  }
+  Vector v(u.size());
+  for_pieces(u.size(), [&](long, long first, long last) {
+    for (long i = first; i < last; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!fixed[k])
+        v[i] = velocity_factor * (u[i] - start[i]) + velocity[i];
+      else
+        v[i] = !given.empty() && given[k] ? given_velocity[i] : (u[i] - start[i]) / dt;
+    }
+  });
   return v;
 }
 
 Vector Kinematics::acceleration_at(const Vector& u) const {
   if (!dynamic()) return Vector::Zero(u.size());
-  Vector a = acceleration_factor * (u - start) + acceleration;
-  for (std::size_t k = 0; k < fixed.size(); ++k) {
-    const auto i = static_cast<Eigen::Index>(k);
-    if (!fixed[k]) continue;
-    a[i] = !given.empty() && given[k] ? given_acceleration[i] : ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
-  }
+  Vector a(u.size());
+  for_pieces(u.size(), [&](long, long first, long last) {
+    for (long i = first; i < last; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      if (!fixed[k])
+        a[i] = acceleration_factor * (u[i] - start[i]) + acceleration[i];
+      else
+        a[i] = !given.empty() && given[k] ? given_acceleration[i] : ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
+    }
+  });
   return a;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/pieces.hpp"
 #include "solver/stopwatch.hpp"
 
 namespace msml::fe {
@@ -127,8 +128,14 @@ bool Newton::unstable_whole() const {
 
 Vector Newton::residual(const Increment& increment) const {
   const Kinematics& motion = increment.motion;
-  Vector residual = motion.force_share * (forces_.external - forces_.internal - forces_.damping) -
-                    motion.inertia_share * forces_.inertia;
+  const Forces& f = forces_;
+  Vector residual(f.external.size());
+  for_pieces(residual.size(), [&](long, long first, long last) {
+    const auto part = [=](const Vector& v) { return v.segment(first, last - first); };
+    residual.segment(first, last - first) =
+        motion.force_share * (part(f.external) - part(f.internal) - part(f.damping)) -
+        motion.inertia_share * part(f.inertia);
+  });
   if (increment.offset.size() > 0) residual -= increment.offset;
   return residual;
 }
@@ -255,8 +262,8 @@ IncrementResult Newton::run(const Increment& increment) {
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     result.definite += definite_taken_;
     tangent_current_ = insist_definite_ = false;
-    round_off_ = round_off(u + jump * moving + step);
     if (limit == 1) return u += jump + step, result;
+    round_off_ = round_off(u + jump * moving + step);
     double share = 1;
     if (moving)
       take_jump(increment, jump, step, u);

@@ -130,7 +130,8 @@ class Newton {
   void report(Outcome& outcome) const;
 
  private:
-  LinearStatus factor(const Increment& increment);
+  /// The matrix of the increment; unless it is to be kept, the tangent may become it.
+  LinearStatus factor(const Increment& increment, bool keep_tangent = true);
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025).
   double linear_tolerance(const Vector& right, const Mask& fixed) const;

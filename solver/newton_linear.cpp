@@ -56,18 +56,24 @@ void keep_in_planes(const Increment& increment, Vector& step) {
 
 }  // namespace
 
-LinearStatus Newton::factor(const Increment& increment) {
+LinearStatus Newton::factor(const Increment& increment, bool keep_tangent) {
   const Kinematics& motion = increment.motion;
   const Settings& settings = model_.settings;
   const bool slides = increment.slides && !increment.slides->empty();
   factored_ = &tangent_;
   if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
     return linear_->factor(tangent_, increment.fixed);
+  // Divided by force_share, so that the tangent is there as it is.
+  const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share +
+                         motion.velocity_factor * settings.damping_mass;
+  const bool plain = motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_;
+  if (plain && !keep_tangent && !increment.damping_matrix) {
+    add(tangent_, inertia, equations_.mass());
+    return linear_->factor(tangent_, increment.fixed);
+  }
   factored_ = &effective_;
   if (motion.dynamic()) {
-    // Divided by force_share, so that the tangent is there as it is.
-    const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share;
-    effective_.assign(tangent_, inertia + motion.velocity_factor * settings.damping_mass, equations_.mass());
+    effective_.assign(tangent_, inertia, equations_.mass());
     if (increment.damping_matrix) add(effective_, motion.velocity_factor, *increment.damping_matrix);
   } else {
     effective_.assign(tangent_, 0, equations_.mass());
@@ -116,7 +122,9 @@ LinearStatus Newton::factor_whole(const Increment& increment) {
 LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, const Vector& residual, Vector& step) {
   const Stopwatch watch(seconds_linear_);
   pulse();
-  LinearStatus status = factor(increment);
+  // With one iteration a step nobody asks for the tangent again before the next one is made.
+  const bool keep_tangent = model_.settings.newton_iterations > 1 || definite_taken_ || jump.size() > 0;
+  LinearStatus status = factor(increment, keep_tangent);
   // A pressure that follows an open face makes the symmetric part indefinite long before anything buckles.
   whole_taken_ = followers_ && indefinite(status);
   if (whole_taken_) status = factor_whole(increment);

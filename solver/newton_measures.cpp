@@ -6,14 +6,17 @@
 #include <cmath>
 
 #include "solver/newton.hpp"
+#include "solver/pieces.hpp"
 
 namespace msml::fe {
 
 double free_norm(const Vector& v, const Mask& fixed) {
-  double sum = 0;
-  for (Eigen::Index k = 0; k < v.size(); ++k)
-    if (!fixed[static_cast<std::size_t>(k)]) sum += v[k] * v[k];
-  return std::sqrt(sum);
+  return std::sqrt(sum_pieces(v.size(), [&](long first, long last) {
+    double sum = 0;
+    for (long k = first; k < last; ++k)
+      if (!fixed[static_cast<std::size_t>(k)]) sum += v[k] * v[k];
+    return sum;
+  }));
 }
 
 double Newton::finest(const Vector& u) const {
@@ -39,10 +42,11 @@ double Newton::round_off(const Vector& u) const {
 }
 
 void Newton::note_residual(const Increment& increment, const Vector& residual, IncrementResult& result) const {
-  const double norm = free_norm(residual, increment.fixed), total = residual.norm();
+  const auto norm_of = [](const Vector& v) { return std::sqrt(dot(v, v)); };
+  const double norm = free_norm(residual, increment.fixed), total = norm_of(residual);
   result.residuals.push_back(norm);
   const double reactions = std::sqrt(std::max(0.0, total * total - norm * norm));
-  result.scale = std::max({forces_.external.norm(), forces_.internal.norm(), forces_.inertia.norm(), reactions});
+  result.scale = std::max({norm_of(forces_.external), norm_of(forces_.internal), norm_of(forces_.inertia), reactions});
   result.largest_scale = std::max({result.largest_scale, result.scale, increment.met});
   if (result.residuals.size() <= 2) result.early_scale = result.largest_scale;
   result.worst_element = forces_.found.smallest_J_element;

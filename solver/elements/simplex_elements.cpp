@@ -37,6 +37,9 @@ SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
       batch_nodes.back().insert(batch_nodes.back().end(), batch.node[lane], batch.node[lane] + nodes);
   }
   colours_ = colour_chunks(batch_nodes, numbering_.nodes());
+  remembers_ = remembers(batches_);
+  for (const Want want : {Want::tangent, Want::single_tangent, Want::definite_tangent})
+    rotated_[static_cast<std::size_t>(want)] = all_rotated(want);
 }
 
 template <int dimension, int nodes, int count>
@@ -167,9 +170,10 @@ void fetch(const Batch& batch, bool positions) {
 }
 
 template <int dimension, int nodes, int count>
-bool SimplexElements<dimension, nodes, count>::rotated(Want want) const {
-  return dimension == 3 && nodes == 4 && std::all_of(batches_.begin(), batches_.end(), [&](const Batch& batch) {
-           return batch.history.empty() && batch.laws.laws.front()->evaluate_rotated(want, {}, {});
+bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
+  return dimension == 3 && nodes == 4 && !remembers_ &&
+         std::all_of(batches_.begin(), batches_.end(), [&](const Batch& batch) {
+           return batch.laws.laws.front()->evaluate_rotated(want, {}, {});
          });
 }
 
@@ -193,7 +197,7 @@ template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
                                                                 BlockMatrix& matrix) const {
   if (!rows_) rows_.emplace(pattern_, numbering_.element_nodes);
-  rotated_.resize(numbering_.elements.size());
+  rotated_elements_.resize(numbering_.elements.size());
   const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
     const Batch& batch = batches_[b];
     if (b + 1 < batches_.size()) fetch(batches_[b + 1], false);
@@ -208,21 +212,21 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
     ShapeGradients g;
     shape_gradients(batch, 0, g);
     if constexpr (dimension == 3 && nodes == 4)
-      put_rotated(response, w, g.g, batch.first, batch.first + batch.count, rotated_.data());
+      put_rotated(response, w, g.g, batch.first, batch.first + batch.count, rotated_elements_.data());
     Notes notes;
     notes.add(w * response.energy, volume_ratio(H));
     Assembled part;
     notes.tell(batch.count, numbering_.elements.data() + batch.first, part);
     return part;
   });
-  rows_->sum(rotated_, matrix);
+  rows_->sum(rotated_elements_, matrix);
   return found;
 }
 
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
-  if (matrix && rotated(want)) return add_rotated(u, want, force, *matrix);
+  if (matrix && rotated_[static_cast<std::size_t>(want)]) return add_rotated(u, want, force, *matrix);
   if (matrix) matrix->set_zero();
   return add_by_colour(colours_, [&](std::size_t b) {
     if (matrix) fetch_blocks(batches_[b], *matrix);
@@ -276,13 +280,14 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
 template <int dimension, int nodes, int count>
 std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
   std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) + (rows_ ? rows_->bytes() : 0) +
-                    rotated_.size() * sizeof(rotated_[0]);
+                    rotated_elements_.size() * sizeof(rotated_elements_[0]);
   for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
   return sum;
 }
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::begin_step(double dt) {
+  if (!remembers_) return;
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     if (!batches_[b].history.empty()) batches_[b].history.begin_step(dt);
   });
@@ -290,6 +295,7 @@ void SimplexElements<dimension, nodes, count>::begin_step(double dt) {
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
+  if (!remembers_) return;
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     if (!batches_[b].history.empty()) end_step(batches_[b], u);
   });
@@ -312,6 +318,7 @@ void SimplexElements<dimension, nodes, count>::end_step(Batch& batch, const Vect
 
 template <int dimension, int nodes, int count>
 double SimplexElements<dimension, nodes, count>::stored_beside() const {
+  if (!remembers_) return 0;
   double sum = 0;
   for (const Batch& batch : batches_) sum += batch.stored_beside;
   return sum;
@@ -319,12 +326,13 @@ double SimplexElements<dimension, nodes, count>::stored_beside() const {
 
 template <int dimension, int nodes, int count>
 std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_energy() const {
-  if (!stored_energies_) return nullptr;
+  if (!stored_energies_ || !remembers_) return nullptr;
   return history_energies(batches_, numbering_.elements.size(), count, element_of<Batch>);
 }
 
 template <int dimension, int nodes, int count>
 std::shared_ptr<const std::vector<double>> SimplexElements<dimension, nodes, count>::history_stress() const {
+  if (!remembers_) return nullptr;
   return history_stresses(batches_, numbering_.elements.size(), count, element_of<Batch>);
 }
 

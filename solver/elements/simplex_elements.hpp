@@ -64,18 +64,19 @@ class SimplexElements final : public Elements {
   void fill(Batch& batch, const Model& model) const;
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
-  bool rotated(Want want) const;
+  bool all_rotated(Want want) const;
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
 
   Numbering numbering_;
   PatternPtr pattern_;
   Densities densities_;
   double thickness_ = 1;
-  bool stored_energies_ = true;
+  bool stored_energies_ = true, remembers_ = false;
+  std::array<bool, 4> rotated_{};  ///< by Want: all tangents are those of RotatedResponse, and the elements linear
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
   mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made when first asked for
-  mutable std::vector<RotatedTetrahedron> rotated_;
+  mutable std::vector<RotatedTetrahedron> rotated_elements_;
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
 };
 

@@ -2,35 +2,19 @@
 // Conjugate gradients.
 #include "solver/linear/cg.hpp"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "solver/pieces.hpp"
 
 namespace msml::fe {
 
 namespace {
 
-constexpr Eigen::Index piece = 6144;  // unknowns of one sum: pieces of fixed size, whatever the number of threads
-
-/// The sum of body(first, last) over all pieces of [0, size).
-template <class Body>
-double sum_pieces(Eigen::Index size, const Body& body) {
-  if (size <= piece) return body(0, size);
-  std::vector<double> sums(static_cast<std::size_t>((size + piece - 1) / piece));
-  tbb::parallel_for(std::size_t(0), sums.size(), [&](std::size_t k) {
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * piece;
-    sums[k] = body(first, std::min(size, first + piece));
-  });
-  return std::accumulate(sums.begin(), sums.end(), 0.0);
-}
-
 /// q = A p at free unknowns, 0 at fixed ones; returns p . q.
 double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, Vector& q) {
-  return sum_pieces(p.size(), [&](Eigen::Index first, Eigen::Index last) {
+  return sum_pieces(p.size(), [&](long first, long last) {
     multiply(A, static_cast<int>(first / 3), static_cast<int>(last / 3), p, q);
-    for (Eigen::Index k = first; k < last; ++k)
+    for (long k = first; k < last; ++k)
       if (fixed[static_cast<std::size_t>(k)]) q[k] = 0;
     return p.segment(first, last - first).dot(q.segment(first, last - first));
   });
@@ -49,16 +33,15 @@ LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const 
     B(r, size, z);
     const double rho = dot(r, z);
     if (!(rho > 0)) return LinearStatus::not_positive_definite;
-    sum_pieces(p.size(), [&, beta = rho / rho_before](Eigen::Index first, Eigen::Index last) {
-      const Eigen::Index count = last - first;
+    for_pieces(p.size(), [&, beta = rho / rho_before](long, long first, long last) {
+      const long count = last - first;
       p.segment(first, count) = z.segment(first, count) + beta * p.segment(first, count);
-      return 0;
     });
     rho_before = rho;
     const double curvature = multiply_free(A, fixed, p, q);
     if (!(curvature > 0)) return LinearStatus::not_positive_definite;
-    size = std::sqrt(sum_pieces(p.size(), [&, alpha = rho / curvature](Eigen::Index first, Eigen::Index last) {
-      const Eigen::Index count = last - first;
+    size = std::sqrt(sum_pieces(p.size(), [&, alpha = rho / curvature](long first, long last) {
+      const long count = last - first;
       x.segment(first, count) += alpha * p.segment(first, count);
       r.segment(first, count) -= alpha * q.segment(first, count);
       return r.segment(first, count).squaredNorm();

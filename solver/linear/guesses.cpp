@@ -8,6 +8,8 @@
 #include <cstring>
 #include <utility>
 
+#include "solver/pieces.hpp"
+
 namespace msml::fe {
 namespace {
 
@@ -71,7 +73,9 @@ void Guesses::expect(const Vector& likely) {
   const auto size = static_cast<std::size_t>(likely.size());
   if (span_.size() != size) span_.assign(size, {});
   image_.resize(size);
-  for (std::size_t k = 0; k < size; ++k) span_[k][0] = likely[static_cast<Eigen::Index>(k)];
+  for_pieces(likely.size(), [&](long, long first, long last) {
+    for (long k = first; k < last; ++k) span_[static_cast<std::size_t>(k)][0] = likely[k];
+  });
 }
 
 void Guesses::start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x) {
@@ -81,10 +85,8 @@ void Guesses::start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Ve
   if (!started_) return;
   const Pattern& pattern = *A.pattern;
   const int rows = pattern.nodes(), pieces = (rows + piece - 1) / piece;
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, span_.size(), 8192), [&](const auto& range) {
-    for (std::size_t k = range.begin(); k < range.end(); ++k)
-      if (fixed[k]) span_[k] = {};
-  });
+  for (std::size_t k = 0; k < fixed.size(); ++k)
+    if (fixed[k]) span_[k] = {};
   std::vector<Projected> parts(static_cast<std::size_t>(pieces));
   tbb::parallel_for(0, pieces, [&](int k) {
     Projected sum;
