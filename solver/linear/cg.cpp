@@ -12,7 +12,7 @@ namespace {
 
 /// q = A p at free unknowns, 0 at fixed ones; returns p . q.
 double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, Vector& q) {
-  return sum_pieces(p.size(), [&](long first, long last) {
+  return sum_pieces<short_piece>(p.size(), [&](long first, long last) {
     multiply(A, static_cast<int>(first / 3), static_cast<int>(last / 3), p, q);
     for (long k = first; k < last; ++k)
       if (fixed[static_cast<std::size_t>(k)]) q[k] = 0;

@@ -13,7 +13,7 @@
 namespace msml::fe {
 namespace {
 
-constexpr int piece = 1024;  // rows of one sum
+constexpr int piece = 256;  // rows of one sum
 
 using Eight = double __attribute__((vector_size(64)));
 

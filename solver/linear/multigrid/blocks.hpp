@@ -54,6 +54,10 @@ struct Blocks {
   const T* block(int p) const { return values.data() + size * static_cast<std::size_t>(p); }
   /// The block at position p of any row.
   void copy(int p, int /*row*/, double* out) const { std::copy_n(block(p), size, out); }
+  /// Rows whose product is work for about ten microseconds.
+  int piece() const {
+    return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / (values.size() + 1)), 8, 1024);
+  }
   /// Gives the numbers back.
   void forget_values() { std::vector<T>().swap(values); }
   std::size_t bytes() const {

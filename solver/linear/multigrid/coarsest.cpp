@@ -23,7 +23,11 @@ bool Coarsest::set(const Blocks<double, B, B>& A) {
 
 void Coarsest::solve(const std::vector<float>& b, std::vector<float>& x) const {
   const Eigen::Map<const Eigen::VectorXf> right(b.data(), inverse_.cols());
-  Eigen::Map<Eigen::VectorXf>(x.data(), inverse_.rows()).noalias() = inverse_ * right;
+  constexpr Eigen::Index piece = 96;  // rows of one task
+  tbb::parallel_for(Eigen::Index(0), (inverse_.rows() + piece - 1) / piece, [&](Eigen::Index k) {
+    const Eigen::Index first = k * piece, count = std::min(piece, inverse_.rows() - first);
+    Eigen::Map<Eigen::VectorXf>(x.data() + first, count).noalias() = inverse_.middleRows(first, count) * right;
+  });
 }
 
 template bool Coarsest::set(const Blocks<double, 3, 3>&);

@@ -11,7 +11,6 @@
 namespace msml::fe {
 namespace {
 
-constexpr int piece = 512;        // rows of one task
 constexpr double highest = 1.05;  // above the estimated radius: Lanczos' method comes from below
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -64,7 +63,7 @@ void Level<B>::estimate_radius() {
   std::vector<double> alphas, betas;
   double rho = 0;
   for (int s = 0; s < steps; ++s) {
-    for_rows(nodes(), piece, [&](int n) {
+    for_rows(nodes(), matrix_.piece(), [&](int n) {
       put<B>(&z[at(B * n)], block_product<B>(&inverse_single_[B * B * at(n)], get<V>(&r[at(B * n)])));
     });
     const double before = rho;
@@ -72,7 +71,7 @@ void Level<B>::estimate_radius() {
     if (!(rho > 1e-30)) break;
     const double beta = s > 0 ? rho / before : 0;
     for (std::size_t k = 0; k < p.size(); ++k) p[k] = z[k] + static_cast<float>(beta) * p[k];
-    for_rows(nodes(), piece, [&](int n) { put<B>(&q[at(B * n)], row_product(matrix_, n, p.data())); });
+    for_rows(nodes(), matrix_.piece(), [&](int n) { put<B>(&q[at(B * n)], row_product(matrix_, n, p.data())); });
     const double alpha = rho / dot(p, q);
     for (int k = 0; k < B * nodes(); ++k) r[at(k)] -= static_cast<float>(alpha) * q[at(k)];
     alphas.push_back(alpha);
@@ -93,7 +92,7 @@ void Level<B>::estimate_radius() {
 template <int B>
 void Level<B>::step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next) {
   using V = Column<B>;
-  for_rows(nodes(), piece, [&](int n) {
+  for_rows(nodes(), matrix_.piece(), [&](int n) {
     const V r = get<V>(&b[at(B * n)]) - row_product(matrix_, n, x.data());
     const V d = keep * get<V>(&direction_[at(B * n)]) + add * block_product<B>(&inverse_single_[B * B * at(n)], r);
     put<B>(&direction_[at(B * n)], d);
@@ -107,7 +106,7 @@ void Level<B>::smooth_from_zero(const Numbers& b, Numbers& x) {
   using V = Column<B>;
   const double a = lowest * radius_, c = highest * radius_, theta = (c + a) / 2, delta = (c - a) / 2;
   const float first = static_cast<float>(1 / theta);
-  for_rows(nodes(), piece, [&](int n) {
+  for_rows(nodes(), matrix_.piece(), [&](int n) {
     const V d = first * block_product<B>(&inverse_single_[B * B * at(n)], get<V>(&b[at(B * n)]));
     put<B>(&direction_[at(B * n)], d);
     put<B>(&x[at(B * n)], d);
@@ -139,7 +138,7 @@ void Level<B>::smooth(const Numbers& b, Numbers& x) {
 template <int B>
 void Level<B>::residual(const Numbers& b, const Numbers& x, Numbers& r) const {
   using V = Column<B>;
-  for_rows(nodes(), piece,
+  for_rows(nodes(), matrix_.piece(),
            [&](int n) { put<B>(&r[at(B * n)], V(get<V>(&b[at(B * n)]) - row_product(matrix_, n, x.data()))); });
 }
 

@@ -17,7 +17,7 @@ std::vector<char> held(const std::vector<char>& fixed) {
 template <int R, int C>
 void multiply_single(const Blocks<float, R, C>& A, const std::vector<float>& x, std::vector<float>& y, bool add) {
   using V = Column<R>;
-  for_rows(A.sparsity.rows(), 512, [&](int r) {
+  for_rows(A.sparsity.rows(), A.piece(), [&](int r) {
     V sum = row_product(A, r, x.data());
     float* out = &y[at(R * r)];
     if (add) {

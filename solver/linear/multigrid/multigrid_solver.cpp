@@ -134,9 +134,9 @@ class MultigridSolver final : public LinearSystem {
     single_r_.resize(count + 8, 0.0f);
     single_z_.resize(count + 8, 0.0f);
     const double scale = 1 / size;
-    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, true, r.data(), scale, single_r_.data()); });
+    for_rows(static_cast<int>(count / 3), 1024, [&](int n) { turned(n, true, r.data(), scale, single_r_.data()); });
     grids_.cycle(single_r_, single_z_);
-    for_rows(static_cast<int>(count / 3), 2048, [&](int n) { turned(n, false, single_z_.data(), size, z.data()); });
+    for_rows(static_cast<int>(count / 3), 1024, [&](int n) { turned(n, false, single_z_.data(), size, z.data()); });
   }
 
   template <class From, class To>
