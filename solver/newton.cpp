@@ -32,6 +32,7 @@ Stop stop_of(LinearStatus status) {
 Newton::Newton(const Model& model, const Equations& equations)
     : model_(model),
       equations_(equations),
+      extent_(model.mesh->points.colwise().maxCoeff() - model.mesh->points.colwise().minCoeff()),
       linear_(equations.numbering().mixed() ? make_indefinite(model.settings.threads, model.settings.pulse)
                                             : make_linear_system(model.settings, equations.geometry())),
       tangent_(equations.elements().pattern()),
@@ -258,7 +259,7 @@ IncrementResult Newton::run(const Increment& increment) {
     definite_taken_ = false;
     const LinearStatus status =
         exact ? direction(increment, u, moving ? jump : Vector(), residual, step)
-              : solve_again(increment, residual, linear_tolerance(residual, increment.fixed), step);
+              : solve_again(increment, residual, linear_tolerance(increment, residual), step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     result.definite += definite_taken_;
     tangent_current_ = insist_definite_ = false;

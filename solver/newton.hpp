@@ -133,8 +133,9 @@ class Newton {
   /// The matrix of the increment; unless it is to be kept, the tangent may become it.
   LinearStatus factor(const Increment& increment, bool keep_tangent = true);
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
-  /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025).
-  double linear_tolerance(const Vector& right, const Mask& fixed) const;
+  /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025). With one solution a step it is
+  /// what was asked for, but not less than a tenth of what round-off makes of the forces: a body at rest costs little.
+  double linear_tolerance(const Increment& increment, const Vector& right) const;
   LinearStatus solve(const Increment& increment, const Vector& right, double tolerance, Vector& step);
   /// By a factorisation of the tangent with the followers' part, symmetric or not.
   LinearStatus factor_whole(const Increment& increment);
@@ -181,6 +182,7 @@ class Newton {
 
   const Model& model_;
   const Equations& equations_;
+  Eigen::RowVector3d extent_;  ///< of the mesh
   std::unique_ptr<LinearSystem> linear_;
   std::unique_ptr<LinearSystem> unsymmetric_;  ///< takes over where follower pressure makes the iteration fail
   BlockMatrix tangent_, effective_;            ///< effective_: with inertia, damping and what else makes it solvable

@@ -84,9 +84,15 @@ LinearStatus Newton::factor(const Increment& increment, bool keep_tangent) {
   return linear_->factor(effective_, increment.fixed);
 }
 
-double Newton::linear_tolerance(const Vector& right, const Mask& fixed) const {
+double Newton::linear_tolerance(const Increment& increment, const Vector& right) const {
   const double asked = model_.settings.linear_tolerance;
-  if (equations_.small_strain() || model_.settings.newton_iterations == 1 || !linear_->iterative()) return asked;
+  const Mask& fixed = increment.fixed;
+  if (!linear_->iterative()) return asked;
+  if (model_.settings.newton_iterations == 1) {
+    const double size = free_norm(right, fixed);
+    return size > 0 ? std::clamp(0.1 * round_off(increment.start) / size, asked, std::max(asked, 0.5)) : asked;
+  }
+  if (equations_.small_strain()) return asked;
   const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
   return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
 }
@@ -141,7 +147,7 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   }
   if (increment.slides) increment.slides->project(right);
   ++solves_;
-  const double tolerance = linear_tolerance(right, increment.fixed);
+  const double tolerance = linear_tolerance(increment, right);
   status = whole_taken_ ? unsymmetric_->solve(right, tolerance, step) : solve(increment, right, tolerance, step);
   keep_in_planes(increment, step);
   factor_known_ = status == LinearStatus::done;

@@ -21,8 +21,7 @@ double free_norm(const Vector& v, const Mask& fixed) {
 
 double Newton::finest(const Vector& u) const {
   // Displacements carry one part in 1e16, strains of a finite-strain law one part in 1e16 of 1.
-  const Points& points = model_.mesh->points;
-  const Eigen::RowVector3d extent = points.colwise().maxCoeff() - points.colwise().minCoeff();
+  const Eigen::RowVector3d& extent = extent_;
   const Numbering& numbering = equations_.numbering();
   double volume = 1.0 / factored_->pattern->nodes();
   for (int c = 0; c < numbering.components; ++c) volume *= extent[c];
@@ -32,12 +31,16 @@ double Newton::finest(const Vector& u) const {
 }
 
 double Newton::round_off(const Vector& u) const {
-  double sum = 0;
-  for (const int p : factored_->pattern->diagonal)
-    for (int i = 0; i < 3; ++i) {
-      const double k = factored_->values[9 * static_cast<std::size_t>(p) + 4 * static_cast<std::size_t>(i)];
-      sum += k * k;
-    }
+  const std::vector<int>& diagonal = factored_->pattern->diagonal;
+  const double sum = sum_pieces(static_cast<long>(diagonal.size()), [&](long first, long last) {
+    double part = 0;
+    for (long n = first; n < last; ++n)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const double k = factored_->values[9 * static_cast<std::size_t>(diagonal[static_cast<std::size_t>(n)]) + 4 * i];
+        part += k * k;
+      }
+    return part;
+  });
   return std::sqrt(sum) * finest(u);
 }
 
