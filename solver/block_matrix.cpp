@@ -165,9 +165,8 @@ void multiply(const BlockMatrix& A, int first, int last, const Vector& x, Vector
 
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y) {
   y.resize(x.size());
-  tbb::parallel_for(tbb::blocked_range<int>(0, A.pattern->nodes(), 256), [&](const tbb::blocked_range<int>& range) {
-    multiply(A, range.begin(), range.end(), x, y);
-  });
+  tbb::parallel_for(tbb::blocked_range<int>(0, A.pattern->nodes(), 256),
+                    [&](const tbb::blocked_range<int>& range) { multiply(A, range.begin(), range.end(), x, y); });
 }
 
 void multiply(const ScalarMatrix& A, const Vector& x, Vector& y) {

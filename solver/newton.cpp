@@ -257,9 +257,8 @@ IncrementResult Newton::run(const Increment& increment) {
     ++iterations_;
     const bool moving = iteration == 0 && moved, exact = iteration > 0 || !again;
     definite_taken_ = false;
-    const LinearStatus status =
-        exact ? direction(increment, u, moving ? jump : Vector(), residual, step)
-              : solve_again(increment, residual, linear_tolerance(increment, residual), step);
+    const LinearStatus status = exact ? direction(increment, u, moving ? jump : Vector(), residual, step)
+                                      : solve_again(increment, residual, linear_tolerance(increment, residual), step);
     if (status != LinearStatus::done) return result.stop = stop_of(status), result;
     result.definite += definite_taken_;
     tangent_current_ = insist_definite_ = false;

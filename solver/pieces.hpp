@@ -24,7 +24,8 @@ template <long piece = long_piece, class Body>
 double sum_pieces(long size, const Body& body) {
   if (size <= piece) return body(0, size);
   std::vector<double> sums(static_cast<std::size_t>((size + piece - 1) / piece));
-  for_pieces<piece>(size, [&](long k, long first, long last) { sums[static_cast<std::size_t>(k)] = body(first, last); });
+  for_pieces<piece>(size,
+                    [&](long k, long first, long last) { sums[static_cast<std::size_t>(k)] = body(first, last); });
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 

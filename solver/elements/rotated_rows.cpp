@@ -55,7 +55,9 @@ struct Block {
 }  // namespace
 
 RotatedRows::RotatedRows(PatternPtr pattern, const std::vector<int>& element_nodes)
-    : pattern_(std::move(pattern)), first_(pattern_->columns.size() + 1, 0), parts_(3 * element_nodes.size() + ahead, 0) {
+    : pattern_(std::move(pattern)),
+      first_(pattern_->columns.size() + 1, 0),
+      parts_(3 * element_nodes.size() + ahead, 0) {
   std::vector<int> next;
   for (const bool counting : {true, false}) {
     for (std::size_t k = 0; k < 4 * element_nodes.size(); ++k) {

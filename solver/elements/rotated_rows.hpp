@@ -7,8 +7,8 @@
 
 namespace msml::fe {
 
-/// What the stiffness of a linear tetrahedron with Hooke's law, turned by R, is made of: with h_a = sqrt(w mu) R dN_a/dX
-/// and the reference volume w its blocks are K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T.
+/// What the stiffness of a linear tetrahedron with Hooke's law, turned by R, is made of: with h_a = sqrt(w mu) R
+/// dN_a/dX and the reference volume w its blocks are K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T.
 struct alignas(64) RotatedTetrahedron {
   double h[4][4] = {};  ///< [a][0..2]; [0][3]: lambda/mu, [1..3][3]: 0
 };
@@ -29,7 +29,8 @@ class RotatedRows {
   void sum_row(int row, const RotatedTetrahedron* elements, double* out) const;
 
   PatternPtr pattern_;
-  std::vector<int> first_;  ///< parts of block p: parts_[first_[p]], …, parts_[first_[p + 1] - 1]; none of diagonal ones
+  std::vector<int>
+      first_;  ///< parts of block p: parts_[first_[p]], …, parts_[first_[p + 1] - 1]; none of diagonal ones
   std::vector<int> parts_;  ///< 16 element + 4 a + b; and a few more that are looked at
 };
 

@@ -172,9 +172,8 @@ void fetch(const Batch& batch, bool positions) {
 template <int dimension, int nodes, int count>
 bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
   return dimension == 3 && nodes == 4 && !remembers_ &&
-         std::all_of(batches_.begin(), batches_.end(), [&](const Batch& batch) {
-           return batch.laws.laws.front()->evaluate_rotated(want, {}, {});
-         });
+         std::all_of(batches_.begin(), batches_.end(),
+                     [&](const Batch& batch) { return batch.laws.laws.front()->evaluate_rotated(want, {}, {}); });
 }
 
 /// h_a = sqrt(w mu) R g_a of the first lanes.
@@ -188,8 +187,7 @@ void put_rotated(const RotatedResponse& response, Lanes w, const Lanes (&g)[4][3
   for (int half = 0; half < 2; ++half) {
     Lanes* of_lane = entries + 8 * half;
     transpose(*reinterpret_cast<Lanes(*)[lanes]>(of_lane));
-    for (int e = first; e < last; ++e)
-      std::memcpy(&elements[e].h[2 * half][0], &of_lane[e - first], sizeof(Lanes));
+    for (int e = first; e < last; ++e) std::memcpy(&elements[e].h[2 * half][0], &of_lane[e - first], sizeof(Lanes));
   }
 }
 

@@ -34,8 +34,7 @@ class SingleRotationElements final : public Elements {
 
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
     if (matrix) matrix->set_zero();
-    return add_by_colour(standard_.colours(),
-                         [&](std::size_t b) { return add_batch(b, u, want, force, matrix); });
+    return add_by_colour(standard_.colours(), [&](std::size_t b) { return add_batch(b, u, want, force, matrix); });
   }
 
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }

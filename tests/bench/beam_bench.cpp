@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -23,7 +24,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* usage =
     "usage: beam_bench WORK KIND N NU SOLVER [THREADS [COUNT]]\n"
-    "  WORK    static: small strain; neo: neo-Hookean equilibrium; step: co-rotated implicit Euler, dt = 1/30\n"
+    "  WORK    static: small strain; neo: neo-Hookean equilibrium; step: co-rotated implicit Euler, dt = 1/30,\n"
+    "          pushed from side to side from step 20 on\n"
     "  KIND    tet4, tet10 or tet10SR\n"
     "  N       5 N x N x N cubes of six tetrahedra\n"
     "  NU      Poisson's ratio\n"
@@ -66,6 +68,20 @@ std::shared_ptr<const fe::Law> neo_hookean(double poisson_ratio) {
       fe::LawFacts{.name = "neoHookean", .shear_modulus = lame.mu, .poisson_ratio = poisson_ratio});
 }
 
+/// A load as large as the weight that pushes sideways from step 20 on, every 25 steps to the other side: a body that
+/// has come to rest would cost next to nothing.
+fe::BodyForce pushes(const fe::Model& model) {
+  const double dt = model.steps[0].dt;
+  const auto side = [dt](double t) {
+    const int step = static_cast<int>(std::lround(t / dt));
+    return step < 20 ? 0.0 : (step - 20) / 25 % 2 == 0 ? 1.0 : -1.0;
+  };
+  return {.name = "pushes",
+          .elements = model.regions[0].elements,
+          .value = Vec3(0, 9.81 * model.regions[0].density, 0),
+          .factor = fe::TimeFunction(side)};
+}
+
 fe::Model model_of(const Choice& choice) {
   const bool step = choice.work == "step";
   fe::Model model = fe::testing::beam_model(choice.n, choice.kind == "tet4" ? CellKind::tet4 : CellKind::tet10,
@@ -81,6 +97,7 @@ fe::Model model_of(const Choice& choice) {
     settings.linear_tolerance = 1e-6;
     model.steps[0].dt = 1.0 / 30;
     model.steps[0].count = choice.count > 0 ? choice.count : 60;
+    model.steps[0].body_forces = {pushes(model)};
   } else {
     settings.linear_tolerance = 1e-8;
     settings.load_steps = std::max(1, choice.count);

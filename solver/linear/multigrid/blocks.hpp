@@ -56,7 +56,8 @@ struct Blocks {
   void copy(int p, int /*row*/, double* out) const { std::copy_n(block(p), size, out); }
   /// Rows whose product is work for about ten microseconds.
   int piece() const {
-    return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / (values.size() + 1)), 8, 1024);
+    return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / (values.size() + 1)), 8,
+                      1024);
   }
   /// Gives the numbers back.
   void forget_values() { std::vector<T>().swap(values); }

@@ -81,7 +81,8 @@ class MultigridSolver final : public LinearSystem {
 
   bool iterative() const override { return true; }
   std::size_t factor_bytes() const override {
-    std::size_t sum = grids_.bytes() + guesses_.bytes() + 2 * geometry_.ends.size() * sizeof(geometry_.ends[0]) + fixed_.size();
+    std::size_t sum =
+        grids_.bytes() + guesses_.bytes() + 2 * geometry_.ends.size() * sizeof(geometry_.ends[0]) + fixed_.size();
     for (const Vector* v : {&geometry_.positions, &geometry_.positions, &displacement_, &reference_, &b_, &r_,
                             &space_.z, &space_.p, &space_.q})
       sum += bytes(*v);
