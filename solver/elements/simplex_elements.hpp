@@ -75,7 +75,8 @@ class SimplexElements final : public Elements {
   std::array<bool, 4> rotated_{};  ///< by Want: all tangents are those of RotatedResponse, and the elements linear
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
-  mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made when first asked for
+  mutable int matrices_ = 0;                 ///< asked for so far
+  mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
   mutable std::vector<RotatedTetrahedron> rotated_elements_;
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
 };

@@ -229,8 +229,8 @@ TEST(ConjugateGradients, StartFromTheBestMultipleOfWhatIsExpected) {
     EXPECT_LE(iterations(b, other),
               1.1 * static_cast<double>(cold) + 1);  // nearer in energy, but what is left is rougher
     EXPECT_LT((other - x).norm(), 1e-4 * x.norm());
-    system->expect(Vector::Zero(b.size()));
-    EXPECT_EQ(iterations(b, again), cold);
+    system->expect(Vector::Zero(b.size()));  // the solution that was kept serves
+    EXPECT_EQ(iterations(b, again), 0);
   }
 }
 
