@@ -67,22 +67,17 @@ void zero_fixed(const Mask& fixed, Vector& v) {
   });
 }
 
-void Guesses::expect(const Vector& likely) {
-  expected_ = likely.size() > 0;
-  if (!expected_) return;
-  const auto size = static_cast<std::size_t>(likely.size());
-  if (span_.size() != size) span_.assign(size, {});
-  image_.resize(size);
-  for_pieces(likely.size(), [&](long, long first, long last) {
-    for (long k = first; k < last; ++k) span_[static_cast<std::size_t>(k)][0] = likely[k];
-  });
-}
-
 void Guesses::start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x) {
-  started_ = std::exchange(expected_, false) && span_.size() == static_cast<std::size_t>(b.size());
+  started_ = likely_.size() == b.size();
   r = b;
   x = Vector::Zero(b.size());
   if (!started_) return;
+  span_.resize(fixed.size());
+  image_.resize(fixed.size());
+  for_pieces(b.size(), [&](long, long first, long last) {
+    for (long k = first; k < last; ++k) span_[static_cast<std::size_t>(k)][0] = likely_[k];
+  });
+  likely_.resize(0);
   const Pattern& pattern = *A.pattern;
   const int rows = pattern.nodes(), pieces = (rows + piece - 1) / piece;
   for (std::size_t k = 0; k < fixed.size(); ++k)
