@@ -13,6 +13,7 @@
 namespace msml::simulation {
 namespace {
 
+constexpr fe::ElementRequest of_the_law{.law = true, .J = false, .rotation = false};
 constexpr fe::ElementRequest only_fibre_stretch{.law = false, .J = false, .rotation = false, .fibre_stretch = true};
 
 /// The tensor whose eigenvalues a field has; "" of other fields.
@@ -76,7 +77,9 @@ Points StateFields::displacement() const {
 Points StateFields::positions() const { return body_.mesh->points + displacement(); }
 
 const fe::ElementResults& StateFields::law() {
-  if (!law_) law_ = measure({.law = true, .J = false, .rotation = false});
+  if (law_) return *law_;
+  law_ = measure(of_the_law);
+  std::vector<double>().swap(law_->strain);  // wanted once at most, while several fields come from the stress
   return *law_;
 }
 
@@ -95,7 +98,7 @@ std::vector<double> StateFields::J() const {
 
 std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "stress") return law().cauchy;
-  if (name == "strain") return law().strain;
+  if (name == "strain") return measure(of_the_law).strain;
   if (name == "energyDensity") return law().energy_density;
   if (name == "vonMises") return von_mises(law().cauchy);
   if (const std::string tensor = tensor_of(name); !tensor.empty()) return principal_values(at_elements(tensor));

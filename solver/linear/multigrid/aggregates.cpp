@@ -176,7 +176,7 @@ void add_strip(const Blocks<float, C, B>& P_transposed, const Sparsity& AP, int 
 template <int B, class Matrix, int C>
 void galerkin(const Matrix& A, const Blocks<float, B, C>& P, const Blocks<float, C, B>& P_transposed,
               Blocks<double, C, C>& coarse) {
-  constexpr int strip = 2048;  // rows of A P that are held at once
+  constexpr int strip = 512;  // rows of A P that are held at once
   const int nodes = A.view().rows();
   const Sparsity AP = product_sparsity(A.view(), P.sparsity);
   if (coarse.sparsity.rows() == 0) coarse.sparsity = product_sparsity(P_transposed.view(), AP);
