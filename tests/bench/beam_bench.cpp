@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* usage =
     "usage: beam_bench WORK KIND N NU SOLVER [THREADS [COUNT]]\n"
-    "  WORK    static: small strain; neo: neo-Hookean equilibrium; step: co-rotated implicit Euler, dt = 1/30,\n"
-    "          pushed from side to side from step 20 on\n"
+    "  WORK    static: small strain; neo: neo-Hookean equilibrium; step: co-rotated implicit Euler, dt = 1/30;\n"
+    "          push: the same, pushed from side to side from step 20 on\n"
     "  KIND    tet4, tet10 or tet10SR\n"
     "  N       5 N x N x N cubes of six tetrahedra\n"
     "  NU      Poisson's ratio\n"
@@ -40,6 +40,7 @@ struct Choice {
   double poisson_ratio = 0.3;
   std::string solver;
   int threads = 2, count = 0;  ///< 0: as the usage says
+  bool takes_steps() const { return work == "step" || work == "push"; }
 };
 
 Choice read(const std::vector<std::string>& words) {
@@ -68,8 +69,7 @@ std::shared_ptr<const fe::Law> neo_hookean(double poisson_ratio) {
       fe::LawFacts{.name = "neoHookean", .shear_modulus = lame.mu, .poisson_ratio = poisson_ratio});
 }
 
-/// A load as large as the weight that pushes sideways from step 20 on, every 25 steps to the other side: a body that
-/// has come to rest would cost next to nothing.
+/// A load as large as the weight that pushes sideways from step 20 on, every 25 steps to the other side.
 fe::BodyForce pushes(const fe::Model& model) {
   const double dt = model.steps[0].dt;
   const auto side = [dt](double t) {
@@ -83,7 +83,7 @@ fe::BodyForce pushes(const fe::Model& model) {
 }
 
 fe::Model model_of(const Choice& choice) {
-  const bool step = choice.work == "step";
+  const bool step = choice.takes_steps();
   fe::Model model = fe::testing::beam_model(choice.n, choice.kind == "tet4" ? CellKind::tet4 : CellKind::tet10,
                                             choice.poisson_ratio, step ? fe::Strain::corotated : fe::Strain::small);
   if (choice.work == "neo") model.regions[0].law = neo_hookean(choice.poisson_ratio);
@@ -97,7 +97,7 @@ fe::Model model_of(const Choice& choice) {
     settings.linear_tolerance = 1e-6;
     model.steps[0].dt = 1.0 / 30;
     model.steps[0].count = choice.count > 0 ? choice.count : 60;
-    model.steps[0].body_forces = {pushes(model)};
+    if (choice.work == "push") model.steps[0].body_forces = {pushes(model)};
   } else {
     settings.linear_tolerance = 1e-8;
     settings.load_steps = std::max(1, choice.count);
@@ -105,13 +105,20 @@ fe::Model model_of(const Choice& choice) {
   return model;
 }
 
+/// The first step, the median of the first sixty, while the body swings, and of later ones, when it has come
+/// to rest and costs less, and the worst of all but the first.
 void add_steps(std::vector<double> times, Json& json) {
   if (times.size() < 2) return;
+  const auto median = [](std::vector<double> some) {
+    std::sort(some.begin(), some.end());
+    return some[some.size() / 2];
+  };
+  constexpr std::size_t swings = 60;
+  const auto end = times.begin() + static_cast<long>(std::min(times.size(), swings));
   json["first"] = times[0];
-  times.erase(times.begin());
-  std::sort(times.begin(), times.end());
-  json["step"] = times[times.size() / 2];
-  json["worst"] = times.back();
+  json["step"] = median({times.begin() + 1, end});
+  if (times.size() >= 5 * swings) json["rest"] = median({times.begin() + 4 * swings, times.end()});
+  json["worst"] = *std::max_element(times.begin() + 1, times.end());
 }
 
 Json run(const Choice& choice) {
@@ -130,7 +137,7 @@ Json run(const Choice& choice) {
     return true;
   });
   const double total = since(start);
-  const bool step = choice.work == "step";
+  const bool step = choice.takes_steps();
   const Vec3 tip = step ? at_13 : fe::testing::tip(model, outcome.state);
   Json json{{"work", choice.work},
             {"kind", choice.kind},

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 @dataclass
 class Row:
-    """A piece of work on the cantilever (work: static, neo or step), or something around it (scene, write, …)."""
+    """A piece of work on the cantilever (work: static, neo, step or push), or something around it (scene, write, …)."""
     work: str
     kind: str = ""
     n: int = 0
@@ -38,6 +38,7 @@ def beam_rows(quick):
         return rows + [Row("static", "tet4", 4, runs=3), Row("neo", "tet10", 4, 0.3, runs=3)]
     rows = [step("tet4", 6, 0.3, "SOFA 15"), step("tet4", 9, 0.3, "SOFA 20"), step("tet4", 15, 0.3, "SOFA 35")]
     rows += [step("tet4", n, 0.49) for n in (6, 9, 15)]
+    rows += [Row("push", "tet4", n, 0.3, count=1000, runs=3) for n in (6, 15)]
     rows += [step(kind, 3, 0.3) for kind in ("tet10", "tet10SR")]
     rows += [Row("step", kind, n, 0.3, count=100, runs=3)
              for kind, n in (("tet4", 16), ("tet10", 8), ("tet10SR", 8))]
@@ -120,7 +121,7 @@ def run_scene(binaries, row):
 
 
 def run_row(binaries, row):
-    if row.work in ("step", "static", "neo"):
+    if row.work in ("step", "push", "static", "neo"):
         return run_beam(binaries, row)
     if row.work == "scene":
         return run_scene(binaries, row)
