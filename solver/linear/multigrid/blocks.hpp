@@ -56,8 +56,8 @@ struct Blocks {
   void copy(int p, int /*row*/, double* out) const { std::copy_n(block(p), size, out); }
   /// Rows whose product is work for about ten microseconds.
   int piece() const {
-    return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / (values.size() + 1)), 8,
-                      1024);
+    const std::size_t numbers = size * sparsity.columns.size() + 1;
+    return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / numbers), 8, 1024);
   }
   /// Gives the numbers back.
   void forget_values() { std::vector<T>().swap(values); }
@@ -87,22 +87,33 @@ void add_product(const float* block, const float* v, Column<R> (&sum)[C]) {
 }
 
 #ifdef __AVX512F__
-/// Row r of A x with the nine numbers of a block in one register; the same as row_product but for round-off.
-inline Single4 wide_row_product(const Blocks<float, 3, 3>& A, int r, const float* x) {
-  const int* columns = A.sparsity.columns.data();
+/// Of three numbers the first three times, then the second and the third, as the entries of a 3 x 3 block want them.
+inline __m512 spread_columns(const float* v) {
   const __m512i entry = _mm512_setr_epi32(0, 0, 0, 1, 1, 1, 2, 2, 2, 3, 3, 3, 3, 3, 3, 3);
-  const auto times = [&](int p, __m512 sum) {
-    const __m512 v = _mm512_permutexvar_ps(entry, _mm512_broadcast_f32x4(_mm_loadu_ps(x + 3 * columns[p])));
-    return _mm512_fmadd_ps(_mm512_loadu_ps(A.block(p)), v, sum);
-  };
+  return _mm512_permutexvar_ps(entry, _mm512_broadcast_f32x4(_mm_loadu_ps(v)));
+}
+
+// Masks of all lanes, as the plain forms make GCC 12 warn of registers that nobody reads.
+/// The sum of the three columns of what times(p, sum) adds up over the blocks p of a row.
+template <class Times>
+Single4 sum_of_columns(const Sparsity& sparsity, int r, const Times& times) {
   __m512 even = _mm512_setzero_ps(), odd = even;  // two sums, so that one need not wait for the other
-  int p = A.sparsity.offsets[static_cast<std::size_t>(r)];
-  const int end = A.sparsity.offsets[static_cast<std::size_t>(r) + 1];
+  int p = sparsity.offsets[static_cast<std::size_t>(r)];
+  const int end = sparsity.offsets[static_cast<std::size_t>(r) + 1];
   for (; p + 1 < end; p += 2) even = times(p, even), odd = times(p + 1, odd);
   if (p < end) even = times(p, even);
   const __m512i three = _mm512_setr_epi32(3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 0, 0, 0);
-  const __m512 sum = _mm512_add_ps(even, odd), next = _mm512_permutexvar_ps(three, sum);
-  return _mm512_castps512_ps128(_mm512_add_ps(_mm512_add_ps(sum, next), _mm512_permutexvar_ps(three, next)));
+  const __m512 sum = _mm512_add_ps(even, odd), next = _mm512_maskz_permutexvar_ps(0xffff, three, sum);
+  return _mm512_maskz_extractf32x4_ps(
+      0xf, _mm512_add_ps(_mm512_add_ps(sum, next), _mm512_maskz_permutexvar_ps(0xffff, three, next)), 0);
+}
+
+/// Row r of A x with the nine numbers of a block in one register; the same as row_product but for round-off.
+inline Single4 wide_row_product(const Blocks<float, 3, 3>& A, int r, const float* x) {
+  return sum_of_columns(A.sparsity, r, [&](int p, __m512 sum) {
+    const __m512 v = spread_columns(x + 3 * A.sparsity.columns[static_cast<std::size_t>(p)]);
+    return _mm512_fmadd_ps(_mm512_loadu_ps(A.block(p)), v, sum);
+  });
 }
 #endif
 

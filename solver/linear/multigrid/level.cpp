@@ -48,6 +48,13 @@ bool Level<B>::invert(const std::vector<double>& diagonals) {
 }
 
 template <int B>
+Column<B> Level<B>::row_product(int n, const float* x) const {
+  if constexpr (B == 3)
+    if (!halves_.empty()) return halves_.row_product(matrix_.sparsity, n, x);
+  return fe::row_product(matrix_, n, x);
+}
+
+template <int B>
 void Level<B>::estimate_radius() {
   // Lanczos' method with the inner product of the diagonal blocks, as conjugate gradients see it (Saad 2003, 6.7.3).
   using V = Column<B>;
@@ -71,7 +78,7 @@ void Level<B>::estimate_radius() {
     if (!(rho > 1e-30)) break;
     const double beta = s > 0 ? rho / before : 0;
     for (std::size_t k = 0; k < p.size(); ++k) p[k] = z[k] + static_cast<float>(beta) * p[k];
-    for_rows(nodes(), matrix_.piece(), [&](int n) { put<B>(&q[at(B * n)], row_product(matrix_, n, p.data())); });
+    for_rows(nodes(), matrix_.piece(), [&](int n) { put<B>(&q[at(B * n)], row_product(n, p.data())); });
     const double alpha = rho / dot(p, q);
     for (int k = 0; k < B * nodes(); ++k) r[at(k)] -= static_cast<float>(alpha) * q[at(k)];
     alphas.push_back(alpha);
@@ -93,7 +100,7 @@ template <int B>
 void Level<B>::step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next) {
   using V = Column<B>;
   for_rows(nodes(), matrix_.piece(), [&](int n) {
-    const V r = get<V>(&b[at(B * n)]) - row_product(matrix_, n, x.data());
+    const V r = get<V>(&b[at(B * n)]) - row_product(n, x.data());
     const V d = keep * get<V>(&direction_[at(B * n)]) + add * block_product<B>(&inverse_single_[B * B * at(n)], r);
     put<B>(&direction_[at(B * n)], d);
     put<B>(&next[at(B * n)], V(get<V>(&x[at(B * n)]) + d));
@@ -139,7 +146,7 @@ template <int B>
 void Level<B>::residual(const Numbers& b, const Numbers& x, Numbers& r) const {
   using V = Column<B>;
   for_rows(nodes(), matrix_.piece(),
-           [&](int n) { put<B>(&r[at(B * n)], V(get<V>(&b[at(B * n)]) - row_product(matrix_, n, x.data()))); });
+           [&](int n) { put<B>(&r[at(B * n)], V(get<V>(&b[at(B * n)]) - row_product(n, x.data()))); });
 }
 
 template class Level<3>;

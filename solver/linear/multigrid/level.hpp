@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One grid of a multigrid hierarchy: its matrix and its smoother.
 #pragma once
-#include "solver/linear/multigrid/blocks.hpp"
+#include "solver/linear/multigrid/halves.hpp"
 
 namespace msml::fe {
 
@@ -18,16 +18,22 @@ class Level {
   bool set(const Matrix& A) {
     const SparsityView view = A.view();
     matrix_.sparsity = {view.rows(), view.offsets, view.columns};
-    matrix_.allocate();
+    halves_.clear();
+    if (halved && B == 3) halves_.allocate(matrix_.sparsity);
+    if (halves_.empty()) matrix_.allocate();
     std::vector<double> diagonals(B * B * static_cast<std::size_t>(nodes()));
     for_rows(nodes(), 512, [&](int r) {
+      const int begin = view.offsets[static_cast<std::size_t>(r)], end = view.offsets[static_cast<std::size_t>(r) + 1];
+      std::vector<float> row(halves_.empty() ? 0 : B * B * static_cast<std::size_t>(end - begin));
+      float* out = halves_.empty() ? matrix_.block(begin) : row.data();
       double block[B * B];
-      for (int p = view.offsets[static_cast<std::size_t>(r)]; p < view.offsets[static_cast<std::size_t>(r) + 1]; ++p) {
+      for (int p = begin; p < end; ++p, out += B * B) {
         A.copy(p, r, block);
-        std::copy(block, block + B * B, matrix_.block(p));
+        std::copy(block, block + B * B, out);
         if (view.columns[static_cast<std::size_t>(p)] == r)
           std::copy(block, block + B * B, diagonals.data() + B * B * static_cast<std::size_t>(r));
       }
+      if (!halves_.empty()) halves_.set_row(matrix_.sparsity, r, row.data());
     });
     return invert(diagonals);
   }
@@ -45,19 +51,22 @@ class Level {
   /// The inverse is not asked for any more.
   void forget_inverse() { std::vector<double>().swap(inverse_); }
   std::size_t bytes() const {
-    return matrix_.bytes() + inverse_.size() * sizeof(double) +
+    return matrix_.bytes() + halves_.bytes() + inverse_.size() * sizeof(double) +
            (inverse_single_.size() + direction_.size() + other_.size()) * sizeof(float);
   }
 
+  bool halved = false;  ///< smooths with a matrix in half precision, where there is one; B = 3
   int degree = 2;       ///< of the smoother
   double lowest = 0.1;  ///< of the radius: errors below are left to the coarser grid
 
  private:
   bool invert(const std::vector<double>& diagonals);
+  Column<B> row_product(int n, const float* x) const;
   void estimate_radius();
   void step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next);
 
   Blocks<float, B, B> matrix_;
+  Halves halves_;  ///< instead of the numbers of matrix_, unless empty
   std::vector<double> inverse_;
   std::vector<float> inverse_single_;
   double radius_ = 1;
