@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Matrices in half precision: their products, and where the multigrid cycle takes them.
+#include "solver/linear/multigrid/halves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "solver/equations.hpp"
+#include "solver/linear/multigrid/multigrid.hpp"
+#include "tests/solver/meshes.hpp"
+
+namespace msml::fe::testing {
+namespace {
+
+bool widens_halves() {
+  Sparsity one;
+  one.width = 1, one.columns = {0}, one.offsets = {0, 1};
+  Halves halves;
+  halves.allocate(one);
+  return !halves.empty();
+}
+
+// Rounding to eleven digits changes each number by at most 2^-11 of itself, or in numbers below 2^-29 of the row's
+// largest, which are off by a fixed amount, by 2^-39 of that one.
+TEST(Halves, HaveProductsWithinTheirRounding) {
+  if (!widens_halves()) GTEST_SKIP() << "this processor does not widen halves";
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> number(-1, 1);
+  Sparsity sparsity;
+  sparsity.width = 40;
+  for (int r = 0; r < 60; ++r) {
+    for (int k = 0; k < r % 7; ++k) sparsity.columns.push_back((r + 5 * k) % sparsity.width);
+    sparsity.offsets.push_back(static_cast<int>(sparsity.columns.size()));
+  }
+  std::vector<float> x(3 * static_cast<std::size_t>(sparsity.width) + 8, NAN);  // what follows must not count
+  for (std::size_t k = 0; k < 3 * static_cast<std::size_t>(sparsity.width); ++k) x[k] = number(random);
+  Halves halves;
+  halves.allocate(sparsity);
+  for (int r = 0; r < sparsity.rows(); ++r) {
+    const float size = std::pow(10.0f, static_cast<float>(r % 41 - 20));  // rows of 1e-20 and of 1e20
+    const int begin = sparsity.offsets[static_cast<std::size_t>(r)];
+    const int count = sparsity.offsets[static_cast<std::size_t>(r) + 1] - begin;
+    std::vector<float> blocks(9 * static_cast<std::size_t>(count) + 1);
+    for (std::size_t k = 0; k < blocks.size(); ++k) blocks[k] = size * number(random) * (k % 5 == 0 ? 1e-6f : 1.0f);
+    halves.set_row(sparsity, r, blocks.data());
+    double sum[3] = {}, bound[3] = {};
+    for (int p = 0; p < count; ++p)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          const double a = blocks[static_cast<std::size_t>(9 * p + 3 * j + i)];
+          const double v = x[static_cast<std::size_t>(3 * sparsity.columns[static_cast<std::size_t>(begin + p)] + j)];
+          sum[i] += a * v;
+          bound[i] += (std::ldexp(1.0, -11) * std::abs(a) + std::ldexp(size, -39)) * std::abs(v);
+        }
+    const Single4 product = halves.row_product(sparsity, r, x.data());
+    for (int i = 0; i < 3; ++i)
+      EXPECT_LE(std::abs(static_cast<double>(product[i]) - sum[i]), 1.01 * bound[i]) << "row " << r;
+  }
+}
+
+struct Beam {
+  explicit Beam(CellKind kind, double mass)
+      : model(beam_model(4, kind, 0.3, Strain::small)), equations(model), A(equations.elements().pattern()) {
+    Forces forces;
+    const Vector zero = Vector::Zero(equations.size());
+    equations.evaluate(zero, {}, Want::tangent, forces, &A);
+    add(A, mass, equations.mass());
+    fixed = make_supports(model.steps[0], equations.numbering(), zero).fixed;
+  }
+  std::size_t bytes() const {
+    Multigrid grids(equations.geometry());
+    EXPECT_EQ(grids.set(A, fixed), LinearStatus::done);
+    return grids.bytes();
+  }
+  long iterations() const {
+    const auto system = make_multigrid(equations.geometry());
+    Vector x;
+    EXPECT_EQ(system->factor(A, fixed), LinearStatus::done);
+    EXPECT_EQ(system->solve(Vector::LinSpaced(equations.size(), -1, 2), 1e-8, x), LinearStatus::done);
+    return system->iterations;
+  }
+  Model model;
+  Equations equations;
+  BlockMatrix A;
+  Mask fixed;
+};
+
+// With mass / dt^2 at every node, not in statics and not where the time step is so long that it is nearly that.
+TEST(Halves, AreForMatricesWithInertiaAlone) {
+  if (!widens_halves()) GTEST_SKIP() << "this processor does not widen halves";
+  for (const CellKind kind : {CellKind::tet4, CellKind::tet10}) {
+    const Beam step(kind, 900), still(kind, 0), slow(kind, 1e-3);
+    const std::size_t saved = 2 * step.A.values.size();  // two bytes instead of four
+    EXPECT_NEAR(static_cast<double>(still.bytes() - step.bytes()), static_cast<double>(saved),
+                0.1 * static_cast<double>(saved));
+    EXPECT_EQ(slow.bytes(), still.bytes());
+    EXPECT_LE(step.iterations(), still.iterations());
+  }
+}
+
+}  // namespace
+}  // namespace msml::fe::testing
