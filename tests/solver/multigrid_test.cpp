@@ -281,6 +281,23 @@ TEST(Multigrid, IsSetUpAgainForAnotherMatrix) {
   }
 }
 
+/// Iterations of conjugate gradients over some time steps of a beam that falls under its weight, one solution each.
+long iterations_of_steps(int count) {
+  Model model = beam_model(4, CellKind::tet4, 0.3, Strain::corotated);
+  model.steps[0].dt = 1.0 / 30, model.steps[0].count = count;
+  model.settings.integrator = Integrator::implicit_euler;
+  model.settings.newton_iterations = 1;
+  model.settings.linear_tolerance = 1e-6;
+  model.settings.linear_solver = LinearSolver::cg;
+  model.settings.preconditioner = Preconditioner::multigrid;
+  const Outcome outcome = solve(model, {});
+  EXPECT_EQ(outcome.stop, Stop::converged) << outcome.diagnosis;
+  return outcome.cg_iterations;
+}
+
+// Backward Euler has damped everything by then: what is left of the forces is round-off.
+TEST(Multigrid, HasNothingToDoForABodyAtRest) { EXPECT_LT(iterations_of_steps(350) - iterations_of_steps(300), 50); }
+
 // A beam pressed past its buckling load: straight, it is in equilibrium, which is not stable.
 TEST(Multigrid, SeesThatAnEquilibriumIsUnstable) {
   Model model = beam_model(2, CellKind::tet4, 0.3, Strain::corotated);

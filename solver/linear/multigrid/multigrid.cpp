@@ -41,9 +41,9 @@ void reach_further(Level<B>& level, bool quadratic) {
   level.lowest = quadratic ? 0.02 : B == 3 ? 0.03 : 0.06;
 }
 
-/// True if inertia is at least a millionth of the stiffness at every node: what moves a body as a whole has no stiffness,
-/// so that the blocks of a row add up to its mass. Then no motion is so soft that half precision (5e-4) would hide it;
-/// in statics a slender beam takes four times as many iterations with it.
+/// True if inertia is at least a millionth of the stiffness at every node: what moves a body as a whole has no
+/// stiffness, so that the blocks of a row add up to its mass. Then no motion is so soft that half precision (5e-4)
+/// would hide it; in statics a slender beam takes four times as many iterations with it.
 bool heavy(const BlockMatrix& A) {
   const Pattern& pattern = *A.pattern;
   std::atomic<bool> everywhere = true;
