@@ -134,8 +134,7 @@ class Newton {
   LinearStatus factor(const Increment& increment, bool keep_tangent = true);
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025). With one solution a step it
-  /// is what was asked for, but not less than a tenth of what round-off makes of the forces: a body at rest costs
-  /// little.
+  /// is what was asked for, unless round-off explains the force at each unknown: a body at rest costs little.
   double linear_tolerance(const Increment& increment, const Vector& right) const;
   LinearStatus solve(const Increment& increment, const Vector& right, double tolerance, Vector& step);
   /// By a factorisation of the tangent with the followers' part, symmetric or not.

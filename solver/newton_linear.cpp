@@ -87,12 +87,11 @@ LinearStatus Newton::factor(const Increment& increment, bool keep_tangent) {
 double Newton::linear_tolerance(const Increment& increment, const Vector& right) const {
   const double asked = model_.settings.linear_tolerance;
   const Mask& fixed = increment.fixed;
-  if (!linear_->iterative()) return asked;
+  if (equations_.small_strain() || !linear_->iterative()) return asked;
   if (model_.settings.newton_iterations == 1) {
-    const double size = free_norm(right, fixed);
-    return size > 0 ? std::clamp(0.1 * round_off(increment.start) / size, asked, std::max(asked, 0.5)) : asked;
+    constexpr double rough = 0.5;  // of round-off
+    return is_round_off(right, *factored_, fixed, finest(increment.start)) ? std::max(asked, rough) : asked;
   }
-  if (equations_.small_strain()) return asked;
   const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
   return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
 }

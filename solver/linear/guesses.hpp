@@ -12,7 +12,7 @@ namespace msml::fe {
 void zero_fixed(const Mask& fixed, Vector& v);
 
 /// The solutions of a few time steps, in whose span that of the next one nearly is (Fischer 1998,
-/// doi 10.1016/S0045-7825(98)00012-7): a motion with two frequencies is met exactly.
+/// doi 10.1016/S0045-7825(98)00012-7): a motion with three frequencies is met exactly.
 class Guesses {
  public:
   /// A vector that the next solution is likely near a multiple of.

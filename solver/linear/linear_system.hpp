@@ -41,7 +41,8 @@ class LinearSystem {
   /// The displacement (3 per node) that the next matrix belongs to; a help to solvers that keep what they made of an
   /// earlier one.
   virtual void place(const Vector& /*displacement*/) {}
-  /// A vector that the next solution is likely near a multiple of; iterations start from the best one.
+  /// A vector that the next solution is likely near a multiple of; iterations start from the best sum of such multiples
+  /// of it and of the last solutions of which something was expected.
   virtual void expect(const Vector& /*solution*/) {}
   /// Looks once more, where factor() has not, whether the matrix taken last is positive definite.
   virtual LinearStatus probe() { return LinearStatus::done; }
