@@ -54,24 +54,16 @@ struct Block {
 
 }  // namespace
 
-RotatedRows::RotatedRows(PatternPtr pattern, const std::vector<int>& element_nodes)
+RotatedRows::RotatedRows(PatternPtr pattern, const std::vector<int>& positions)
     : pattern_(std::move(pattern)),
       first_(pattern_->columns.size() + 1, 0),
-      parts_(3 * element_nodes.size() + ahead, 0) {
-  std::vector<int> next;
-  for (const bool counting : {true, false}) {
-    for (std::size_t k = 0; k < 4 * element_nodes.size(); ++k) {
-      const std::size_t first = k / 16 * 4, a = k / 4 % 4, b = k % 4;
-      if (a == b) continue;
-      const std::size_t block = at(pattern_->find(element_nodes[first + a], element_nodes[first + b]));
-      if (counting)
-        ++first_[block + 1];
-      else
-        parts_[at(next[block]++)] = static_cast<int>(k);
-    }
-    for (std::size_t p = 1; p < first_.size() && counting; ++p) first_[p] += first_[p - 1];
-    next.assign(first_.begin(), first_.end() - 1);
-  }
+      parts_(positions.size() / 4 * 3 + ahead, 0) {
+  const auto off_diagonal = [](std::size_t k) { return k / 4 % 4 != k % 4; };
+  for (std::size_t k = 0; k < positions.size(); ++k) first_[at(positions[k]) + 1] += off_diagonal(k);
+  for (std::size_t p = 1; p < first_.size(); ++p) first_[p] += first_[p - 1];
+  std::vector<int> next(first_.begin(), first_.end() - 1);
+  for (std::size_t k = 0; k < positions.size(); ++k)
+    if (off_diagonal(k)) parts_[at(next[at(positions[k])]++)] = static_cast<int>(k);
 }
 
 void RotatedRows::sum_row(int row, const RotatedTetrahedron* elements, double* out) const {

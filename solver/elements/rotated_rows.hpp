@@ -18,9 +18,8 @@ struct alignas(64) RotatedTetrahedron {
 /// no forces, which gives the diagonal ones.
 class RotatedRows {
  public:
-  RotatedRows() = default;
-  /// `element_nodes`: four nodes of each element.
-  RotatedRows(PatternPtr pattern, const std::vector<int>& element_nodes);
+  /// `positions`: of block (a, b) of element e in the pattern, at 16 e + 4 a + b.
+  RotatedRows(PatternPtr pattern, const std::vector<int>& positions);
   /// matrix = the sum over all elements, symmetric to the last bit.
   void sum(const std::vector<RotatedTetrahedron>& elements, BlockMatrix& matrix) const;
   std::size_t bytes() const { return (first_.size() + parts_.size()) * sizeof(int); }
@@ -29,8 +28,7 @@ class RotatedRows {
   void sum_row(int row, const RotatedTetrahedron* elements, double* out) const;
 
   PatternPtr pattern_;
-  std::vector<int>
-      first_;  ///< parts of block p: parts_[first_[p]], …, parts_[first_[p + 1] - 1]; none of diagonal ones
+  std::vector<int> first_;  ///< parts_[first_[p] .. first_[p + 1]) are those of block p; diagonal blocks have none
   std::vector<int> parts_;  ///< 16 element + 4 a + b; and a few more that are looked at
 };
 

@@ -180,21 +180,30 @@ bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
 void put_rotated(const RotatedResponse& response, Lanes w, const Lanes (&g)[4][3], int first, int last,
                  RotatedTetrahedron* elements) {
   const Lanes size = root(w * response.mu);
-  Lanes entries[16] = {};
-  for (int a = 0; a < 4; ++a)
-    for (int i = 0; i < 3; ++i) entries[4 * a + i] = size * inner<3>(response.R.c + 3 * i, g[a]);
-  entries[3] = response.lambda / response.mu;
   for (int half = 0; half < 2; ++half) {
-    Lanes* of_lane = entries + 8 * half;
-    transpose(*reinterpret_cast<Lanes(*)[lanes]>(of_lane));
-    for (int e = first; e < last; ++e) std::memcpy(&elements[e].h[2 * half][0], &of_lane[e - first], sizeof(Lanes));
+    Lanes entries[lanes] = {};  // of two nodes: entry by entry, then lane by lane
+    for (int a = 0; a < 2; ++a)
+      for (int i = 0; i < 3; ++i) entries[4 * a + i] = size * inner<3>(response.R.c + 3 * i, g[2 * half + a]);
+    if (half == 0) entries[3] = response.lambda / response.mu;
+    transpose(entries);
+    for (int e = first; e < last; ++e) std::memcpy(&elements[e].h[2 * half][0], &entries[e - first], sizeof(Lanes));
   }
+}
+
+template <int dimension, int nodes, int count>
+std::vector<int> SimplexElements<dimension, nodes, count>::positions_of_blocks() const {
+  std::vector<int> positions;
+  positions.reserve(nodes * nodes * numbering_.elements.size());
+  for (const Batch& batch : batches_)
+    for (int lane = 0; lane < batch.count; ++lane)
+      positions.insert(positions.end(), std::begin(batch.position[lane]), std::end(batch.position[lane]));
+  return positions;
 }
 
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
                                                                 BlockMatrix& matrix) const {
-  if (!rows_) rows_.emplace(pattern_, numbering_.element_nodes);
+  if (!rows_) rows_.emplace(pattern_, positions_of_blocks());
   rotated_elements_.resize(numbering_.elements.size());
   const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
     const Batch& batch = batches_[b];

@@ -65,6 +65,7 @@ class SimplexElements final : public Elements {
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
   bool all_rotated(Want want) const;
+  std::vector<int> positions_of_blocks() const;  ///< in the pattern, element after element
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
 
   Numbering numbering_;

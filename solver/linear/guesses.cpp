@@ -58,6 +58,32 @@ Eight coefficients(const Projected& sum) {
 
 double sum_of(const Eight& v) { return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])); }
 
+/// Rows [first, last) of A X, zero at fixed unknowns, and their share of X^T A X and X^T b.
+template <class Group>
+Projected project_rows(const BlockMatrix& A, const Mask& fixed, const Vector& b, const std::vector<Group>& X, int first,
+                       int last, std::vector<Group>& AX) {
+  const Pattern& pattern = *A.pattern;
+  Projected sum;
+  for (int row = first; row < last; ++row) {
+    Eight image[3] = {};
+    for (int p = pattern.offsets[static_cast<std::size_t>(row)]; p < pattern.offsets[static_cast<std::size_t>(row) + 1];
+         ++p) {
+      const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
+      const Group* v = &X[3 * static_cast<std::size_t>(pattern.columns[static_cast<std::size_t>(p)])];
+      for (int i = 0; i < 3; ++i)
+        image[i] += a[3 * i] * eight(v[0]) + a[3 * i + 1] * eight(v[1]) + a[3 * i + 2] * eight(v[2]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t unknown = 3 * static_cast<std::size_t>(row) + i;
+      if (fixed[unknown]) image[i] = Eight{};
+      std::memcpy(&AX[unknown], &image[i], sizeof(Eight));
+      for (std::size_t j = 0; j < 8; ++j) sum.energies[j] += X[unknown][j] * image[i];
+      sum.works += b[static_cast<Eigen::Index>(unknown)] * eight(X[unknown]);
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 void zero_fixed(const Mask& fixed, Vector& v) {
@@ -78,32 +104,13 @@ void Guesses::start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Ve
     for (long k = first; k < last; ++k) span_[static_cast<std::size_t>(k)][0] = likely_[k];
   });
   likely_.resize(0);
-  const Pattern& pattern = *A.pattern;
-  const int rows = pattern.nodes(), pieces = (rows + piece - 1) / piece;
   for (std::size_t k = 0; k < fixed.size(); ++k)
     if (fixed[k]) span_[k] = {};
+  const int rows = A.pattern->nodes(), pieces = (rows + piece - 1) / piece;
   std::vector<Projected> parts(static_cast<std::size_t>(pieces));
   tbb::parallel_for(0, pieces, [&](int k) {
-    Projected sum;
-    for (int row = k * piece; row < std::min(rows, (k + 1) * piece); ++row) {
-      Eight image[3] = {};
-      for (int p = pattern.offsets[static_cast<std::size_t>(row)];
-           p < pattern.offsets[static_cast<std::size_t>(row) + 1]; ++p) {
-        const double* a = A.values.data() + 9 * static_cast<std::size_t>(p);
-        const Group* v = &span_[3 * static_cast<std::size_t>(pattern.columns[static_cast<std::size_t>(p)])];
-        for (int i = 0; i < 3; ++i)
-          image[i] += a[3 * i] * eight(v[0]) + a[3 * i + 1] * eight(v[1]) + a[3 * i + 2] * eight(v[2]);
-      }
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::size_t unknown = 3 * static_cast<std::size_t>(row) + i;
-        if (fixed[unknown]) image[i] = Eight{};
-        std::memcpy(&image_[unknown], &image[i], sizeof(Eight));
-        const Eight own = eight(span_[unknown]);
-        for (std::size_t j = 0; j < most; ++j) sum.energies[j] += span_[unknown][j] * image[i];
-        sum.works += b[static_cast<Eigen::Index>(unknown)] * own;
-      }
-    }
-    parts[static_cast<std::size_t>(k)] = sum;
+    parts[static_cast<std::size_t>(k)] =
+        project_rows(A, fixed, b, span_, k * piece, std::min(rows, (k + 1) * piece), image_);
   });
   Projected sum;
   for (const Projected& part : parts) sum += part;
