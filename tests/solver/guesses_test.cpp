@@ -42,11 +42,11 @@ struct Problem {
     guesses.keep(x);
   }
   /// |b - A x| / |b| where a solution starts.
-  double left(const Vector& expected, const Vector& b) {
+  double left(const Vector& expected, const Vector& b, double round_off = 1e-12) {
     Vector r, x;
     guesses.expect(expected);
     guesses.start(A, fixed, b, r, x);
-    EXPECT_LT((b - image(x) - r).norm(), 1e-12 * b.norm());
+    EXPECT_LT((b - image(x) - r).norm(), round_off * b.norm());
     return r.norm() / b.norm();
   }
 
@@ -89,6 +89,15 @@ TEST(Guesses, StayFiniteWhereVectorsAreZeroOrMultiplesOfEachOther) {
   EXPECT_LT(beam.left(Vector::Zero(x.size()), b), 1e-11);
   EXPECT_LT(beam.left(2 * x, b), 1e-11);
   EXPECT_EQ(beam.left(x, b) < 1e-11, true);
+}
+
+// Round-off, 1e-16, over the smallest eigenvalue of the normed energies, about 1e-8; the multiples are about 1e4.
+TEST(Guesses, MeetWhatNearlyDependentVectorsSpan) {
+  Problem beam;
+  const Vector x = beam.vector(), y = beam.vector();
+  beam.keep(x);
+  beam.keep(x + 1e-4 * y);
+  EXPECT_LT(beam.left(Vector::Zero(x.size()), beam.image(y), 1e-10), 1e-6);
 }
 
 TEST(Guesses, ServeOnlyWhereSomethingIsExpected) {
