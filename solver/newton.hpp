@@ -119,8 +119,8 @@ class Newton {
   Vector residual(const Increment& increment) const;
   /// What round-off changes in displacements at u and in strains times the size of elements.
   double finest(const Vector& u) const;
-  const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
-  const BlockMatrix& tangent() const { return tangent_; }
+  const Forces& forces() const { return forces_; }         ///< at the last u that was evaluated
+  const BlockMatrix& tangent() const { return tangent_; }  ///< as prepare() left it; an increment may change it
   const BlockMatrix* followers() const { return followers_.get(); }  ///< null without follower pressure
   int iterations() const { return iterations_; }                     ///< so far
   /// Adds to the counts of iterations and linear solves.
@@ -134,7 +134,8 @@ class Newton {
   LinearStatus factor(const Increment& increment, bool keep_tangent = true);
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025). With one solution a step it
-  /// is what was asked for, unless round-off explains the force at each unknown: a body at rest costs little.
+  /// is what was asked for, unless forces cancel but for what round-off explains at each unknown: a body at rest costs
+  /// little.
   double linear_tolerance(const Increment& increment, const Vector& right) const;
   LinearStatus solve(const Increment& increment, const Vector& right, double tolerance, Vector& step);
   /// By a factorisation of the tangent with the followers' part, symmetric or not.

@@ -69,6 +69,7 @@ LinearStatus Newton::factor(const Increment& increment, bool keep_tangent) {
   const bool plain = motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_;
   if (plain && !keep_tangent && !increment.damping_matrix) {
     add(tangent_, inertia, equations_.mass());
+    tangent_current_ = false;
     return linear_->factor(tangent_, increment.fixed);
   }
   factored_ = &effective_;
@@ -88,11 +89,13 @@ double Newton::linear_tolerance(const Increment& increment, const Vector& right)
   const double asked = model_.settings.linear_tolerance;
   const Mask& fixed = increment.fixed;
   if (equations_.small_strain() || !linear_->iterative()) return asked;
-  if (model_.settings.newton_iterations == 1) {
-    constexpr double rough = 0.5;  // of round-off
-    return is_round_off(right, *factored_, fixed, finest(increment.start)) ? std::max(asked, rough) : asked;
-  }
   const double scale = std::max(forces_.external.norm(), forces_.internal.norm());
+  if (model_.settings.newton_iterations == 1) {
+    constexpr double cancelled = 1e-9, rough = 0.5;  // of forces, of round-off
+    const bool nothing =
+        free_norm(right, fixed) <= cancelled * scale && is_round_off(right, *factored_, fixed, finest(increment.start));
+    return nothing ? std::max(asked, rough) : asked;
+  }
   return scale > 0 ? std::clamp(0.01 * free_norm(right, fixed) / scale, asked, 1e-3) : asked;
 }
 

@@ -165,9 +165,11 @@ void describe_control(Factory<SettingsBuilder>& tag, Keys& keys) {
                                          "beside the displacement, root of the energy of that beside the energy stored "
                                          "or the work done; linear problems end after one solution"});
   keys.linear_tolerance = tag.parameter(
-      "linearTolerance", {.range = open(0, 1),
-                          .fallback = usual.linear_tolerance,
-                          .doc = "of conjugate gradients: true residual over the right-hand side, from a zero start"});
+      "linearTolerance",
+      {.range = open(0, 1),
+       .fallback = usual.linear_tolerance,
+       .doc = "of conjugate gradients: true residual over the right-hand side; with newtonIterations=1 a right-hand "
+              "side that is round-off of forces in balance is left alone"});
   keys.line_search = tag.parameter<bool>("lineSearch", {.fallback = true, .doc = "shorten steps that do not descend"});
   keys.definiteness = tag.parameter<std::string>(
       "definiteness",

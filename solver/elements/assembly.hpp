@@ -92,7 +92,7 @@ using PointsVisitor = std::function<void(std::size_t element, const ElementPoint
 class Elements {
  public:
   virtual ~Elements() = default;
-  /// force += internal force; matrix (if not null) = tangent as `want` says.
+  /// force += internal force; matrix (if not null) = tangent as `want` says: set, not added to. One call at a time.
   virtual Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const = 0;
   /// mass += consistent (or lumped) mass with the regions' densities.
   virtual void add_mass(bool lumped, ScalarMatrix& mass) const = 0;

@@ -108,7 +108,7 @@ class InlaidElements final : public Elements {
     for (const Inlay& inlay : model.inlays) inner_.emplace_back(model, inlay, *body_);
   }
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
-    Assembled found = body_->add_internal(u, want, force, matrix);
+    Assembled found = body_->add_internal(u, want, force, matrix);  // sets the matrix, to which the inner ones add
     for (const Inner& inner : inner_) {
       const Assembled more = inner.add_internal(u, want, force, matrix);
       found.energy += more.energy;

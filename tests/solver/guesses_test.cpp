@@ -14,7 +14,7 @@ namespace {
 
 /// A beam's stiffness with a mass on the diagonal, clamped at one end, and random vectors.
 struct Problem {
-  Problem() : model(beam_model(3, CellKind::tet4, 0.3, Strain::small)), equations(model), A(pattern()) {
+  Problem() : model(beam_model(5, CellKind::tet4, 0.3, Strain::small)), equations(model), A(pattern()) {
     Forces forces;
     const Vector zero = Vector::Zero(equations.size());
     equations.evaluate(zero, {}, Want::tangent, forces, &A);

@@ -41,27 +41,25 @@ class MultigridSolver final : public LinearSystem {
     guesses_.start(*matrix_, fixed_, b_, r_, x);
     const double target = tolerance * std::sqrt(dot(b_, b_));
     double size = std::sqrt(dot(r_, r_)), before = std::numeric_limits<double>::infinity();
+    if (size <= target) size = measure(x);  // the difference of large multiples drifts too
     while (size > target) {
       const double decades = std::max(1.0, std::log10(size / target));
-      const long limit = fresh_ ? limit_fresh : static_cast<long>(2 * usual_ * decades) + 10;
+      const bool judged = !fresh_ && usual_ > 0;
+      const long limit = judged ? static_cast<long>(2 * usual_ * decades) + 10 : limit_fresh;
       long taken = 0;
       const LinearStatus status = conjugate_gradients(
           *matrix_, fixed_, [this](const Vector& r, double length, Vector& z) { precondition(r, length, z); }, target,
           limit, space_, r_, x, taken);
       iterations += taken;
-      if (fresh_ && status == LinearStatus::done && usual_ == 0) usual_ = static_cast<double>(taken) / decades;
-      stale_ = !fresh_ && static_cast<double>(taken) > usual_ * decades + worth_a_set_up;
+      if (usual_ == 0 && status == LinearStatus::done && decades >= 2) usual_ = static_cast<double>(taken) / decades;
+      stale_ = judged && static_cast<double>(taken) > usual_ * decades + worth_a_set_up;
       if (status == LinearStatus::limit && fresh_) return status;
       if (status == LinearStatus::not_positive_definite && fresh_) return status;
       if (status != LinearStatus::done) {
         const LinearStatus made = set_up();
         if (made != LinearStatus::done) return made;
       }
-      // The recurrence drifts from the true residual: measure it, and go on from there where needed.
-      multiply(*matrix_, x, r_);
-      r_ = b_ - r_;
-      zero_fixed(fixed_, r_);
-      size = std::sqrt(dot(r_, r_));
+      size = measure(x);  // go on from there where needed
       if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
       if (status == LinearStatus::done && size > target && size > 0.5 * before)
         return size <= round_off(x) ? LinearStatus::done : LinearStatus::limit;
@@ -90,6 +88,14 @@ class MultigridSolver final : public LinearSystem {
   }
 
  private:
+  /// The norm of the true residual, from which recurrences drift.
+  double measure(const Vector& x) {
+    multiply(*matrix_, x, r_);
+    r_ = b_ - r_;
+    zero_fixed(fixed_, r_);
+    return std::sqrt(dot(r_, r_));
+  }
+
   /// Norm of the residual that round-off in A x alone can leave: eps |A| |x| (Higham 2002, section 3.5). No method does
   /// better.
   double round_off(const Vector& x) const {
@@ -162,7 +168,8 @@ class MultigridSolver final : public LinearSystem {
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   bool usable_ = false, fresh_ = false, stale_ = false;
-  double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve after the last set-up
+  double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve of two tenths or more after the
+                      ///< last set-up; 0 before
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
   Vector b_, r_;
