@@ -8,34 +8,36 @@
 
 namespace msml::fe {
 
-Vector Kinematics::velocity_at(const Vector& u) const {
-  if (!dynamic()) return Vector::Zero(u.size());
-  Vector v(u.size());
-  for_pieces(u.size(), [&](long, long first, long last) {
+namespace {
+
+/// A rate of each unknown: by `free` where it is free, given_rate where a function says it, otherwise by `moved`.
+template <class Free, class Moved>
+Vector rates(const Kinematics& motion, Free&& free, const Vector& given_rate, Moved&& moved) {
+  Vector rate(motion.start.size());
+  for_pieces(rate.size(), [&](long, long first, long last) {
     for (long i = first; i < last; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      if (!fixed[k])
-        v[i] = velocity_factor * (u[i] - start[i]) + velocity[i];
-      else
-        v[i] = !given.empty() && given[k] ? given_velocity[i] : (u[i] - start[i]) / dt;
+      const bool given = !motion.given.empty() && motion.given[k];
+      rate[i] = !motion.fixed[k] ? free(i) : given ? given_rate[i] : moved(i);
     }
   });
-  return v;
+  return rate;
+}
+
+}  // namespace
+
+Vector Kinematics::velocity_at(const Vector& u) const {
+  if (!dynamic()) return Vector::Zero(u.size());
+  return rates(
+      *this, [&](long i) { return velocity_factor * (u[i] - start[i]) + velocity[i]; }, given_velocity,
+      [&](long i) { return (u[i] - start[i]) / dt; });
 }
 
 Vector Kinematics::acceleration_at(const Vector& u) const {
   if (!dynamic()) return Vector::Zero(u.size());
-  Vector a(u.size());
-  for_pieces(u.size(), [&](long, long first, long last) {
-    for (long i = first; i < last; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (!fixed[k])
-        a[i] = acceleration_factor * (u[i] - start[i]) + acceleration[i];
-      else
-        a[i] = !given.empty() && given[k] ? given_acceleration[i] : ((u[i] - start[i]) / dt - velocity_before[i]) / dt;
-    }
-  });
-  return a;
+  return rates(
+      *this, [&](long i) { return acceleration_factor * (u[i] - start[i]) + acceleration[i]; }, given_acceleration,
+      [&](long i) { return ((u[i] - start[i]) / dt - velocity_before[i]) / dt; });
 }
 
 Equations::Equations(const Model& model)

@@ -77,10 +77,17 @@ Points StateFields::displacement() const {
 Points StateFields::positions() const { return body_.mesh->points + displacement(); }
 
 const fe::ElementResults& StateFields::law() {
-  if (law_) return *law_;
-  law_ = measure(of_the_law);
-  std::vector<double>().swap(law_->strain);  // wanted once at most, while several fields come from the stress
+  if (!law_) law_ = measure(of_the_law), std::vector<double>().swap(law_->strain);  // room that few scenes want
   return *law_;
+}
+
+const std::vector<double>& StateFields::strain() {
+  if (!strain_) {
+    fe::ElementResults found = measure(of_the_law);
+    strain_ = std::move(found.strain);
+    if (!law_) law_ = std::move(found);
+  }
+  return *strain_;
 }
 
 const fe::ElementResults& StateFields::tensors() {
@@ -98,7 +105,7 @@ std::vector<double> StateFields::J() const {
 
 std::vector<double> StateFields::at_elements(const std::string& name) {
   if (name == "stress") return law().cauchy;
-  if (name == "strain") return measure(of_the_law).strain;
+  if (name == "strain") return strain();
   if (name == "energyDensity") return law().energy_density;
   if (name == "vonMises") return von_mises(law().cauchy);
   if (const std::string tensor = tensor_of(name); !tensor.empty()) return principal_values(at_elements(tensor));

@@ -37,7 +37,8 @@ class StateFields {
   bool mixed() const { return model_.formulation == fe::Formulation::mixed; }
   Points displacement() const;
   std::vector<double> scalar() const;
-  const fe::ElementResults& law();
+  const fe::ElementResults& law();  ///< without strain
+  const std::vector<double>& strain();
   const fe::ElementResults& tensors();
   std::vector<double> J() const;
   std::vector<double> nodal(const std::string& name);
@@ -48,6 +49,7 @@ class StateFields {
   const Body& body_;
   const fe::State& state_;
   std::optional<fe::ElementResults> law_, tensors_;
+  std::optional<std::vector<double>> strain_;
 };
 
 /// Von Mises stress sqrt(3/2 s:s), s the deviator, of tensors of 6 components xx yy zz xy yz xz.
