@@ -8,7 +8,7 @@
 namespace msml::fe {
 
 /// The numbers of a matrix with eleven binary digits (IEEE 754 binary16), half as many bytes to read for a smoother
-/// that is bound by memory. Each row has a power of two in front, so that numbers down to 1e-9 of its largest one keep
+/// that is bound by memory. Each row has a power of two in front, so that numbers down to 4e-9 of its largest one keep
 /// all digits. Made only where the processor widens halves (AVX-512); stays empty elsewhere.
 class Halves {
  public:

@@ -37,6 +37,15 @@ class Level {
     });
     return invert(diagonals);
   }
+  /// Goes over to half precision, where there is one; matrix() is empty then. B = 3.
+  void halve() {
+    halves_.allocate(matrix_.sparsity);
+    if (halves_.empty()) return;
+    for_rows(nodes(), 512, [&](int r) {
+      halves_.set_row(matrix_.sparsity, r, matrix_.block(matrix_.sparsity.offsets[static_cast<std::size_t>(r)]));
+    });
+    matrix_.forget_values();
+  }
   int nodes() const { return matrix_.sparsity.rows(); }
   Numbers vector() const { return Numbers(B * static_cast<std::size_t>(nodes()) + 8, 0.0f); }
   /// x = S b: `degree` steps from zero.
