@@ -2,6 +2,9 @@
 // The inner products that every element of solids is made of, eight elements at a time.
 #pragma once
 #include <tbb/parallel_for.h>
+#ifdef __AVX512F__
+#include <immintrin.h>
+#endif
 
 #include <cmath>
 #include <cstring>
@@ -20,6 +23,45 @@ Lanes gather(const Batch& batch, int a, const double* values) {
   static_assert(lanes == 8);
   const auto value = [&](int lane) { return values[3 * batch.node[lane][a]]; };
   return Lanes{value(0), value(1), value(2), value(3), value(4), value(5), value(6), value(7)};
+}
+
+/// The vectors values[3 n .. 3 n + 2] of the nodes of eight elements.
+template <int nodes, class Batch>
+void gather_vectors(const Batch& batch, const double* values, Lanes (&vectors)[nodes][3]) {
+#ifdef __AVX512F__
+  for (int a = 0; a < nodes; a += 2) {
+    Lanes rows[lanes];  // lane by lane: a vector and one number more, twice
+    for (int lane = 0; lane < lanes; ++lane) {
+      const __m512d one = _mm512_maskz_loadu_pd(0x07, values + 3 * batch.node[lane][a]);
+      rows[lane] = Lanes(_mm512_mask_loadu_pd(one, 0x70, values + (3 * batch.node[lane][a + 1] - 4)));
+    }
+    transpose(rows);
+    for (int i = 0; i < 3; ++i) vectors[a][i] = rows[i], vectors[a + 1][i] = rows[4 + i];
+  }
+#else
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < 3; ++i) vectors[a][i] = gather(batch, a, values + i);
+#endif
+}
+
+/// Adds such vectors of the first `count` elements to those of their nodes.
+template <int nodes, class Batch>
+void scatter_vectors(const Batch& batch, const Lanes (&vectors)[nodes][3], double* values) {
+  using Two = double __attribute__((vector_size(16)));
+  for (int a = 0; a < nodes; a += 2) {
+    Lanes rows[lanes] = {vectors[a][0],     vectors[a][1],     vectors[a][2],     {},
+                         vectors[a + 1][0], vectors[a + 1][1], vectors[a + 1][2], {}};
+    transpose(rows);
+    for (int lane = 0; lane < batch.count; ++lane)
+      for (int s = 0; s < 2; ++s) {
+        double* out = values + 3 * batch.node[lane][a + s];
+        Two sum;
+        std::memcpy(&sum, out, sizeof sum);
+        sum += Two{rows[lane][4 * s], rows[lane][4 * s + 1]};
+        std::memcpy(out, &sum, sizeof sum);
+        out[2] += rows[lane][4 * s + 2];
+      }
+  }
 }
 
 /// a . b of two vectors of `dimension` lanes.

@@ -6,41 +6,32 @@
 
 #include <cstring>
 
+#include "solver/elements/gradient_products.hpp"
+
 namespace msml::fe {
 namespace {
 
 using Four = double __attribute__((vector_size(32)));
 using Two = double __attribute__((vector_size(16)));
 
-constexpr int ahead = 64;  // parts that are asked for before they are needed, about those of a row
+constexpr int ahead = 48;  // parts that are asked for before they are needed, about those of a row
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-Four load(const double* from) {
-  Four values;
-  std::memcpy(&values, from, sizeof values);
-  return values;
-}
-
-/// A block while it is summed, the part times I apart; the fourth numbers mean nothing.
-struct Block {
-  Four row[3] = {}, inner = {};
-
-  /// Every product has a number of node a and one of node b, so that block (b, a) is the transpose to the last bit.
-  void add(const double (&h)[4][4], int a, int b) {
-    const Four A = load(h[a]), B = load(h[b]);
-    const double ratio = h[0][3];
-    for (int i = 0; i < 3; ++i) {
-      row[i] += h[b][i] * A;
-      row[i] += ratio * (h[a][i] * B);
-    }
-    inner += A * B;
+/// Three rows of a 3 x 3 matrix; the fourth numbers mean nothing.
+struct Rows {
+  Four row[3] = {};
+  /// += a b^T.
+  void add(const double* a, const double* b) {
+    Four B;
+    std::memcpy(&B, b, sizeof B);
+    for (int i = 0; i < 3; ++i) row[i] += a[i] * B;
   }
-  void close() {
-    const double diagonal = inner[0] + inner[1] + inner[2];
-    row[0] += diagonal * Four{1, 0, 0, 0};
-    row[1] += diagonal * Four{0, 1, 0, 0};
-    row[2] += diagonal * Four{0, 0, 1, 0};
+  Rows transposed() const {
+    const Four low = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5);   // 00 10 01 11
+    const Four high = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7);  // 02 12
+    return {{__builtin_shufflevector(low, row[2], 0, 1, 4, 7), __builtin_shufflevector(low, row[2], 2, 3, 5, 7),
+             __builtin_shufflevector(high, row[2], 0, 1, 6, 7)}};
   }
   /// What is written behind a row is overwritten by the next one.
   void write(double* out) const {
@@ -52,47 +43,108 @@ struct Block {
   }
 };
 
+/// A block while it is summed: D is gathered for as long as elements agree in what multiplies it.
+template <int nodes>
+struct Block {
+  Rows values, first, second;
+  double ratio = 0, of_first = 0, of_second = 0;
+  bool begun = false;
+
+  void add(const double (&h)[nodes][4], unsigned a, unsigned b) {
+    const GradientProduct& product = gradient_products<nodes>[16 * a + b];
+    if (h[a][3] != ratio || (nodes > 4 && product.first != of_first)) {
+      if (begun) close();
+      ratio = h[a][3], of_first = product.first, of_second = product.second;
+    }
+    begun = true;
+    first.add(h[a], h[b]);
+    for (std::size_t n = 0; nodes > 4 && n < at(product.count); ++n)
+      second.add(h[product.pairs[n][0]], h[product.pairs[n][1]]);
+  }
+  /// Adds D^T + ratio D + tr(D) I.
+  void close() {
+    Rows D = first;
+    for (int i = 0; i < 3 && nodes > 4; ++i) D.row[i] = of_first * first.row[i] + of_second * second.row[i];
+    const Rows turned = D.transposed();
+    const double trace = D.row[0][0] + D.row[1][1] + D.row[2][2];
+    for (int i = 0; i < 3; ++i) values.row[i] += turned.row[i] + ratio * D.row[i];
+    values.row[0] += trace * Four{1, 0, 0, 0};
+    values.row[1] += trace * Four{0, 1, 0, 0};
+    values.row[2] += trace * Four{0, 0, 1, 0};
+    first = second = {};
+  }
+};
+
 }  // namespace
 
-RotatedRows::RotatedRows(PatternPtr pattern, const std::vector<int>& positions)
+template <int nodes>
+RotatedRows<nodes>::RotatedRows(PatternPtr pattern, const std::vector<int>& positions)
     : pattern_(std::move(pattern)),
+      elements_(positions.size() / at(nodes * nodes)),
       first_(pattern_->columns.size() + 1, 0),
-      parts_(positions.size() / 4 * 3 + ahead, 0) {
-  const auto off_diagonal = [](std::size_t k) { return k / 4 % 4 != k % 4; };
+      parts_(elements_.size() * at(nodes * (nodes - 1)) + ahead, 0) {
+  constexpr std::size_t blocks = nodes * nodes;
+  const auto off_diagonal = [](std::size_t k) { return k % blocks / nodes != k % nodes; };
   for (std::size_t k = 0; k < positions.size(); ++k) first_[at(positions[k]) + 1] += off_diagonal(k);
   for (std::size_t p = 1; p < first_.size(); ++p) first_[p] += first_[p - 1];
   std::vector<int> next(first_.begin(), first_.end() - 1);
   for (std::size_t k = 0; k < positions.size(); ++k)
-    if (off_diagonal(k)) parts_[at(next[at(positions[k])]++)] = static_cast<int>(k);
+    if (off_diagonal(k))
+      parts_[at(next[at(positions[k])]++)] =
+          static_cast<unsigned>(k / blocks * stride + 16 * (k % blocks / nodes) + k % nodes);
 }
 
-void RotatedRows::sum_row(int row, const RotatedTetrahedron* elements, double* out) const {
-  const auto part_at = [&](int k) { return static_cast<unsigned>(parts_[at(k)]); };
-  Block own;
+template <int nodes>
+void RotatedRows<nodes>::set(int first, int count, const Tensor<Lanes>& R, Lanes stiffness, Lanes ratio,
+                             const Lanes (&gradients)[4][3]) {
+  const Lanes size = root(stiffness);
+  Lanes h[nodes][3];
+  for (int a = 0; a < 4; ++a)
+    for (int i = 0; i < 3; ++i)
+      h[a][i] = size * (R(i, 0) * gradients[a][0] + R(i, 1) * gradients[a][1] + R(i, 2) * gradients[a][2]);
+  for (int a = 4; a < nodes; ++a)
+    for (int i = 0; i < 3; ++i) {
+      const auto [c, d] = Tetrahedron<10>::edges[at(a - 4)];
+      h[a][i] = h[c][i] + h[d][i];
+    }
+  for (int a = 0; a < nodes; a += 2) {
+    Lanes entries[lanes] = {h[a][0], h[a][1], h[a][2], ratio, h[a + 1][0], h[a + 1][1], h[a + 1][2], ratio};
+    transpose(entries);
+    for (int e = 0; e < count; ++e) std::memcpy(elements_[at(first + e)].h[a], &entries[e], sizeof(Lanes));
+  }
+}
+
+template <int nodes>
+void RotatedRows<nodes>::sum_row(int row, double* out) const {
+  const int diagonal = pattern_->diagonal[at(row)];
+  Rows own;
   for (int p = pattern_->offsets[at(row)]; p < pattern_->offsets[at(row) + 1]; ++p) {
-    if (p == pattern_->diagonal[at(row)]) continue;
-    Block block;
+    if (p == diagonal) continue;
+    Block<nodes> block;
     for (int k = first_[at(p)]; k < first_[at(p) + 1]; ++k) {
-      const double* soon = elements[part_at(k + ahead) / 16].h[0];
-      __builtin_prefetch(soon);
-      __builtin_prefetch(soon + 8);
-      const unsigned part = part_at(k);
-      block.add(elements[part / 16].h, part / 4 % 4, part % 4);
+      const unsigned soon = parts_[at(k + ahead)], pair = parts_[at(k)] % stride;
+      __builtin_prefetch(elements_[soon / stride].h[soon % stride / 16]);
+      __builtin_prefetch(elements_[soon / stride].h[soon % 16]);
+      block.add(elements_[parts_[at(k)] / stride].h, pair / 16, pair % 16);
     }
     block.close();
-    block.write(out + 9 * at(p));
-    for (int i = 0; i < 3; ++i) own.row[i] -= block.row[i];
+    block.values.write(out + 9 * at(p));
+    for (int i = 0; i < 3; ++i) own.row[i] -= block.values.row[i];
   }
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < i; ++j) own.row[i][j] = own.row[j][i] = 0.5 * (own.row[i][j] + own.row[j][i]);
-  own.write(out + 9 * at(pattern_->diagonal[at(row)]));
+  const Rows turned = own.transposed();
+  for (int i = 0; i < 3; ++i) own.row[i] = 0.5 * (own.row[i] + turned.row[i]);
+  own.write(out + 9 * at(diagonal));
 }
 
-void RotatedRows::sum(const std::vector<RotatedTetrahedron>& elements, BlockMatrix& matrix) const {
+template <int nodes>
+void RotatedRows<nodes>::sum(BlockMatrix& matrix) const {
   matrix.values.resize(9 * pattern_->columns.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, pattern_->nodes(), 128), [&](const auto& range) {
-    for (int row = range.begin(); row < range.end(); ++row) sum_row(row, elements.data(), matrix.values.data());
+    for (int row = range.begin(); row < range.end(); ++row) sum_row(row, matrix.values.data());
   });
 }
+
+template class RotatedRows<4>;
+template class RotatedRows<10>;
 
 }  // namespace msml::fe

@@ -1,35 +1,59 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stiffness matrices R K R^T of linear tetrahedra, block by block.
+// Stiffness matrices R K R^T of straight tetrahedra, block by block.
 #pragma once
 #include <vector>
 
 #include "solver/block_matrix.hpp"
+#include "solver/materials/lanes.hpp"
 
 namespace msml::fe {
 
-/// What the stiffness of a linear tetrahedron with Hooke's law, turned by R, is made of: with h_a = sqrt(w mu) R
-/// dN_a/dX and the reference volume w its blocks are K_ab = (h_a . h_b) I + h_b h_a^T + (lambda/mu) h_a h_b^T.
+/// What the stiffness of a straight tetrahedron with Hooke's law, turned by R, is made of: with the reference volume w,
+/// h_a = sqrt(w mu) R G_a and D_ab = h_a h_b^T in the place of G_a G_b^T in gradient_products, its blocks are
+/// K_ab = D^T + (lambda/mu) D + tr(D) I.
+template <int nodes>
 struct alignas(64) RotatedTetrahedron {
-  double h[4][4] = {};  ///< [a][0..2]; [0][3]: lambda/mu, [1..3][3]: 0
+  double h[nodes][4] = {};  ///< [a][0..2]; [a][3]: lambda/mu
 };
 
 /// Adds up such matrices. Each block is summed in registers over the elements around its edge, and written once: faster
 /// than adding the blocks of each element to the matrix. The blocks of a row add up to zero, as K moved as a whole has
-/// no forces, which gives the diagonal ones.
+/// no forces, which gives the diagonal ones. For 4 or 10 nodes.
+template <int nodes>
 class RotatedRows {
  public:
-  /// `positions`: of block (a, b) of element e in the pattern, at 16 e + 4 a + b.
+  /// `positions`: of block (a, b) of element e in the pattern, at nodes (nodes e + a) + b.
   RotatedRows(PatternPtr pattern, const std::vector<int>& positions);
+  /// Sets `count` elements from `first` on: their rotations, w mu, lambda/mu and the gradients of linear shape
+  /// functions. From several threads at once for different elements.
+  void set(int first, int count, const Tensor<Lanes>& R, Lanes stiffness, Lanes ratio, const Lanes (&gradients)[4][3]);
   /// matrix = the sum over all elements, symmetric to the last bit.
-  void sum(const std::vector<RotatedTetrahedron>& elements, BlockMatrix& matrix) const;
-  std::size_t bytes() const { return (first_.size() + parts_.size()) * sizeof(int); }
+  void sum(BlockMatrix& matrix) const;
+  std::size_t bytes() const {
+    return (first_.size() + parts_.size()) * sizeof(int) + elements_.size() * sizeof(elements_[0]);
+  }
 
  private:
-  void sum_row(int row, const RotatedTetrahedron* elements, double* out) const;
+  static constexpr unsigned stride = nodes == 4 ? 64 : 256;  ///< of elements in parts_
+  void sum_row(int row, double* out) const;
 
   PatternPtr pattern_;
-  std::vector<int> first_;  ///< parts_[first_[p] .. first_[p + 1]) are those of block p; diagonal blocks have none
-  std::vector<int> parts_;  ///< 16 element + 4 a + b; and a few more that are looked at
+  std::vector<RotatedTetrahedron<nodes>> elements_;
+  std::vector<int> first_;       ///< parts_[first_[p] .. first_[p + 1]) are those of block p; diagonal blocks have none
+  std::vector<unsigned> parts_;  ///< stride element + 16 a + b; and a few more that are looked at
 };
+
+/// The positions that RotatedRows wants, of elements in batches.
+template <int nodes, class Batches>
+std::vector<int> positions_of_blocks(const Batches& batches) {
+  std::size_t elements = 0;
+  for (const auto& batch : batches) elements += static_cast<std::size_t>(batch.count);
+  std::vector<int> positions;
+  positions.reserve(elements * nodes * nodes);
+  for (const auto& batch : batches)
+    for (int lane = 0; lane < batch.count; ++lane)
+      positions.insert(positions.end(), batch.position[lane], batch.position[lane] + nodes * nodes);
+  return positions;
+}
 
 }  // namespace msml::fe

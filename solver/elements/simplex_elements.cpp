@@ -176,35 +176,10 @@ bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
                      [&](const Batch& batch) { return batch.laws.laws.front()->evaluate_rotated(want, {}, {}); });
 }
 
-/// h_a = sqrt(w mu) R g_a of the first lanes.
-void put_rotated(const RotatedResponse& response, Lanes w, const Lanes (&g)[4][3], int first, int last,
-                 RotatedTetrahedron* elements) {
-  const Lanes size = root(w * response.mu);
-  for (int half = 0; half < 2; ++half) {
-    Lanes entries[lanes] = {};  // of two nodes: entry by entry, then lane by lane
-    for (int a = 0; a < 2; ++a)
-      for (int i = 0; i < 3; ++i) entries[4 * a + i] = size * inner<3>(response.R.c + 3 * i, g[2 * half + a]);
-    if (half == 0) entries[3] = response.lambda / response.mu;
-    transpose(entries);
-    for (int e = first; e < last; ++e) std::memcpy(&elements[e].h[2 * half][0], &entries[e - first], sizeof(Lanes));
-  }
-}
-
-template <int dimension, int nodes, int count>
-std::vector<int> SimplexElements<dimension, nodes, count>::positions_of_blocks() const {
-  std::vector<int> positions;
-  positions.reserve(nodes * nodes * numbering_.elements.size());
-  for (const Batch& batch : batches_)
-    for (int lane = 0; lane < batch.count; ++lane)
-      positions.insert(positions.end(), std::begin(batch.position[lane]), std::end(batch.position[lane]));
-  return positions;
-}
-
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
                                                                 BlockMatrix& matrix) const {
-  if (!rows_) rows_.emplace(pattern_, positions_of_blocks());
-  rotated_elements_.resize(numbering_.elements.size());
+  if (!rows_) rows_.emplace(pattern_, positions_of_blocks<nodes>(batches_));
   const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
     const Batch& batch = batches_[b];
     if (b + 1 < batches_.size()) fetch(batches_[b + 1], false);
@@ -219,14 +194,14 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
     ShapeGradients g;
     shape_gradients(batch, 0, g);
     if constexpr (dimension == 3 && nodes == 4)
-      put_rotated(response, w, g.g, batch.first, batch.first + batch.count, rotated_elements_.data());
+      rows_->set(batch.first, batch.count, response.R, w * response.mu, response.lambda / response.mu, g.g);
     Notes notes;
     notes.add(w * response.energy, volume_ratio(H));
     Assembled part;
     notes.tell(batch.count, numbering_.elements.data() + batch.first, part);
     return part;
   });
-  rows_->sum(rotated_elements_, matrix);
+  rows_->sum(matrix);
   return found;
 }
 
@@ -288,8 +263,7 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
 
 template <int dimension, int nodes, int count>
 std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
-  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) + (rows_ ? rows_->bytes() : 0) +
-                    rotated_elements_.size() * sizeof(rotated_elements_[0]);
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) + (rows_ ? rows_->bytes() : 0);
   for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
   return sum;
 }

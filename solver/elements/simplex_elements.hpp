@@ -65,7 +65,6 @@ class SimplexElements final : public Elements {
   Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
   bool all_rotated(Want want) const;
-  std::vector<int> positions_of_blocks() const;  ///< in the pattern, element after element
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
 
   Numbering numbering_;
@@ -76,9 +75,8 @@ class SimplexElements final : public Elements {
   std::array<bool, 4> rotated_{};  ///< by Want: all tangents are those of RotatedResponse, and the elements linear
   std::vector<Batch> batches_;
   std::vector<std::vector<Chunk>> colours_;
-  mutable int matrices_ = 0;                 ///< asked for so far
-  mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
-  mutable std::vector<RotatedTetrahedron> rotated_elements_;
+  mutable int matrices_ = 0;                    ///< asked for so far
+  mutable std::optional<RotatedRows<4>> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
 };
 

@@ -30,8 +30,12 @@ struct NodeValues {
 template <int dimension, int nodes, class Batch>
 NodeValues<dimension, nodes> gather_nodes(const Batch& batch, const Vector& u) {
   NodeValues<dimension, nodes> values;
-  for (int a = 0; a < nodes; ++a)
-    for (int i = 0; i < dimension; ++i) values.u[a][i] = gather(batch, a, u.data() + i);
+  if constexpr (dimension == 3) {
+    gather_vectors(batch, u.data(), values.u);
+  } else {
+    for (int a = 0; a < nodes; ++a)
+      for (int i = 0; i < dimension; ++i) values.u[a][i] = gather(batch, a, u.data() + i);
+  }
   return values;
 }
 
@@ -39,7 +43,8 @@ NodeValues<dimension, nodes> gather_nodes(const Batch& batch, const Vector& u) {
 template <int dimension, int nodes>
 Gradients displacement_gradient(const NodeValues<dimension, nodes>& values, const Lanes* inverse,
                                 const ReferenceGradients<dimension, nodes>& r) {
-  Gradients H{};
+  Gradients H;
+  if constexpr (dimension < 3) H = {};
   for (int i = 0; i < dimension; ++i) {
     Lanes by_xi[dimension];  // row i of du/dxi
     for (std::size_t d = 0; d < dimension; ++d) {
@@ -50,8 +55,10 @@ Gradients displacement_gradient(const NodeValues<dimension, nodes>& values, cons
         for (std::size_t a = 1; a < nodes; ++a) by_xi[d] += values.u[a][i] * r[a][d];
       }
     }
-    for (int k = 0; k < dimension; ++k)
-      for (int d = 0; d < dimension; ++d) H(i, k) += by_xi[d] * inverse[dimension * d + k];
+    for (int k = 0; k < dimension; ++k) {
+      H(i, k) = by_xi[0] * inverse[k];
+      for (int d = 1; d < dimension; ++d) H(i, k) += by_xi[d] * inverse[dimension * d + k];
+    }
   }
   return H;
 }
@@ -82,6 +89,7 @@ void add_stiffness(const Lanes* A, Lanes w, const SimplexGradients<dimension, no
 
 template <int dimension, int nodes, class Batch>
 void scatter_force(const Batch& batch, const SimplexResult<dimension, nodes>& result, Vector& force) {
+  if constexpr (dimension == 3) return scatter_vectors(batch, result.force, force.data());
   for (int lane = 0; lane < batch.count; ++lane)
     for (int a = 0; a < nodes; ++a) {
       double* f = force.data() + 3 * batch.node[lane][a];

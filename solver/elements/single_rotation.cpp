@@ -30,11 +30,23 @@ class SingleRotationElements final : public Elements {
       move_corner(batches_[b]);
       remember(model, batches[b], batches_[b]);
     });
+    for (const RotationBatch& batch : batches_) {
+      all_made_ = all_made_ && batch.kept.empty();
+      exact_ = exact_ || batch.exact;
+    }
   }
 
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
-    if (matrix) matrix->set_zero();
-    return add_by_colour(standard_.colours(), [&](std::size_t b) { return add_batch(b, u, want, force, matrix); });
+    matrices_ += matrix != nullptr;
+    // As SimplexElements does.
+    const bool by_rows = matrices_ > 2 && matrix && all_made_ && !(want == Want::tangent && exact_);
+    if (by_rows && !rows_) rows_.emplace(pattern(), positions_of_blocks<10>(standard_.batches()));
+    if (matrix && !by_rows) matrix->set_zero();
+    const Assembled found = add_by_colour(standard_.colours(), [&](std::size_t b) {
+      return add_batch(b, u, want, force, by_rows ? nullptr : matrix, by_rows ? &*rows_ : nullptr);
+    });
+    if (by_rows) rows_->sum(*matrix);
+    return found;
   }
 
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }
@@ -55,17 +67,16 @@ class SingleRotationElements final : public Elements {
     for (const double beside : stored_beside_) sum += beside;
     return sum;
   }
-  std::size_t bytes() const override { return standard_.bytes() + batches_.size() * sizeof(RotationBatch); }
+  std::size_t bytes() const override {
+    std::size_t sum = standard_.bytes() + (rows_ ? rows_->bytes() : 0);
+    for (const RotationBatch& batch : batches_) sum += batch.bytes();
+    return sum;
+  }
   const Numbering& numbering() const override { return standard_.numbering(); }
   const PatternPtr& pattern() const override { return standard_.pattern(); }
 
  private:
   using Batch = SimplexBatch<3, 10, 4>;
-
-  static void gather_all(const Batch& batch, const Vector& u, Lanes (&moved)[10][3]) {
-    for (int a = 0; a < 10; ++a)
-      for (int i = 0; i < 3; ++i) moved[a][i] = gather(batch, a, u.data() + i);
-  }
 
   void remember(const Model& model, const Batch& batch, RotationBatch& own) const {
     const Region& region = model.regions[static_cast<std::size_t>(batch.region)];
@@ -81,7 +92,7 @@ class SingleRotationElements final : public Elements {
 
   void end_step(std::size_t b, const Vector& u) {
     Lanes moved[10][3];
-    gather_all(standard_.batches()[b], u, moved);
+    gather_vectors(standard_.batches()[b], u.data(), moved);
     fe::end_step(moved, batches_[b]);
     SimplexResult<3, 10> unused;
     const RotationState state = evaluate_rotation(batches_[b], moved, unused);
@@ -91,12 +102,14 @@ class SingleRotationElements final : public Elements {
         stored_beside_[b] += history.stored[lane] - state.energy[lane];
   }
 
-  Assembled add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const {
+  /// The tangent goes to a matrix, to rows, or nowhere.
+  Assembled add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix,
+                      RotatedRows<10>* rows) const {
     const auto& batch = standard_.batches()[b];
     const RotationBatch& own = batches_[b];
     if (matrix) fetch_blocks(batch, *matrix);
     Lanes moved[10][3];
-    gather_all(batch, u, moved);
+    gather_vectors(batch, u.data(), moved);
     SimplexResult<3, 10> result;
     const RotationState state = evaluate_rotation(own, moved, result);
     Assembled found;
@@ -109,6 +122,7 @@ class SingleRotationElements final : public Elements {
       }
     }
     scatter_force<3, 10>(batch, result, force);
+    if (rows) rows->set(batch.first, batch.count, state.R, factor_of(own) * own.shear, own.ratio, own.g);
     if (!matrix) return found;
     rotation_tangent(own, state, want == Want::tangent && own.exact, result);
     scatter_stiffness<3, 10>(batch, result, *matrix);
@@ -118,6 +132,10 @@ class SingleRotationElements final : public Elements {
   SimplexElements<3, 10> standard_;
   std::vector<RotationBatch> batches_;
   std::vector<double> stored_beside_;  ///< of each batch
+  bool all_made_ = true;               ///< no batch keeps its stiffness
+  bool exact_ = false;                 ///< a law asks for the derivative of the force as tangent
+  mutable int matrices_ = 0;           ///< asked for so far
+  mutable std::optional<RotatedRows<10>> rows_;
 };
 
 }  // namespace

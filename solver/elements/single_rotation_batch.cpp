@@ -3,8 +3,10 @@
 #include "solver/elements/single_rotation_batch.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <cstring>
 
-#include "solver/materials/polar.hpp"
+#include "solver/elements/gradient_products.hpp"
+#include "solver/materials/corotation.hpp"
 
 namespace msml::fe {
 namespace {
@@ -45,14 +47,47 @@ Tensor<Lanes> inverse_of(const Tensor<Lanes>& D, const Tensor<Lanes>& U) {
   return inverse;
 }
 
+/// The stiffness of straight elements of one law, from what gradient_products says: made faster than read.
+void make_stiffness(const RotationBatch& batch, RestStiffness& K) {
+  Lanes G[10][3];
+  for (int a = 0; a < 10; ++a)
+    for (int i = 0; i < 3; ++i) {
+      const auto ends = Tetrahedron<10>::edges[static_cast<std::size_t>(std::max(a - 4, 0))];
+      G[a][i] = a < 4 ? batch.g[a][i] : batch.g[ends[0]][i] + batch.g[ends[1]][i];
+    }
+  for (int b = 0; b < 10; ++b)
+    for (int a = 0; a <= b; ++a) {
+      const GradientProduct& product = gradient_products<10>[static_cast<std::size_t>(16 * a + b)];
+      Tensor<Lanes> D;
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          Lanes sum = product.first * (G[a][i] * G[b][j]);
+          for (std::size_t n = 0; n < static_cast<std::size_t>(product.count); ++n)
+            sum += product.second * (G[product.pairs[n][0]][i] * G[product.pairs[n][1]][j]);
+          D(i, j) = batch.shear * sum;
+        }
+      Lanes* block = K.block[packed(b, a)];
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) block[3 * i + j] = D(j, i) + batch.ratio * D(i, j);
+      for (int i = 0; i < 3; ++i) block[4 * i] += trace(D);
+    }
+}
+
+/// The stiffness at rest; `room` is used where it has to be made.
+const RestStiffness& stiffness_of(const RotationBatch& batch, RestStiffness& room) {
+  if (!batch.kept.empty()) return batch.kept.front();
+  make_stiffness(batch, room);
+  return room;
+}
+
 /// q = K d and d . q / 2.
 template <class Displacements, class Forces>
-Lanes apply_stiffness(const RotationBatch& batch, const Displacements& d, Forces& q) {
+Lanes apply_stiffness(const RestStiffness& stiffness, const Displacements& d, Forces& q) {
   for (auto& row : q)
     for (Lanes& entry : row) entry = Lanes{};
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
-      const Lanes* K = batch.K[packed(b, a)];
+      const Lanes* K = stiffness.block[packed(b, a)];
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
           q[a][i] += K[3 * i + j] * d[b][j];
@@ -61,6 +96,33 @@ Lanes apply_stiffness(const RotationBatch& batch, const Displacements& d, Forces
     }
   Lanes energy{};
   for (int a = 0; a < 10; ++a) energy += 0.5 * inner<3>(d[a], q[a]);
+  return energy;
+}
+
+/// The same for straight elements of one law: the stresses at the quadrature points cost less than their stiffness.
+Lanes apply_hooke(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&q)[10][3]) {
+  static const auto points = stiffness_rule<3, 10>();
+  static const auto reference = [] {
+    std::array<ReferenceGradients<3, 10>, 4> r;
+    for (std::size_t p = 0; p < 4; ++p) r[p] = Tetrahedron<10>::gradients(points[p].xi);
+    return r;
+  }();
+  const Lanes* inverse = batch.g[1];  // dL_1/dX, dL_2/dX, dL_3/dX
+  NodeValues<3, 10> values;
+  SimplexResult<3, 10> result;
+  std::memcpy(values.u, d, sizeof d);
+  std::fill_n(&result.force[0][0], 30, Lanes{});
+  Lanes energy{};
+  for (std::size_t p = 0; p < 4; ++p) {
+    const Tensor<Lanes> e = sym(displacement_gradient<3, 10>(values, inverse, reference[p]));
+    Tensor<Lanes> stress;  // over mu
+    for (int k = 0; k < 9; ++k) stress.c[k] = 2.0 * e.c[k];
+    for (int i = 0; i < 3; ++i) stress(i, i) += batch.ratio * trace(e);
+    const Lanes weight = 6 * points[p].weight * batch.shear;
+    add_force<3, 10>(stress, weight, inverse, reference[p], result);
+    energy += 0.5 * weight * contract(stress, e);
+  }
+  std::memcpy(q, result.force, sizeof q);
   return energy;
 }
 
@@ -77,7 +139,7 @@ void relax(const RotationHistory& history, RotationState& state) {
 
 /// factor Y^T K, 3 x 3 for each node: column 3 b + j of row r is sum_a (e_r x d_a) . (-K_ab)_j; rows are rotations
 /// about axes.
-void rotate_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&N)[10][9]) {
+void rotate_stiffness(const RestStiffness& stiffness, const Lanes& factor, const Lanes (&d)[10][3], Lanes (&N)[10][9]) {
   for (auto& row : N)
     for (Lanes& entry : row) entry = Lanes{};
   // Column r of Y_a is d_a x e_r.
@@ -92,13 +154,12 @@ void rotate_stiffness(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes
   };
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
-      const Lanes* K = batch.K[packed(b, a)];
+      const Lanes* K = stiffness.block[packed(b, a)];
       add(d[a], K, false, N[b]);
       if (a != b) add(d[b], K, true, N[a]);
     }
-  for (const RotationHistory& history : batch.history)
-    for (auto& row : N)
-      for (Lanes& entry : row) entry *= history.series.factor();
+  for (auto& row : N)
+    for (Lanes& entry : row) entry *= factor;
 }
 
 /// S' = Y^T K Y + sym(sum_a y_a q_a^T - (y_a . q_a) I - [w] U), y = X + d.
@@ -143,9 +204,10 @@ void add_cross(const Lanes* v, double sign, Lanes* out) {
 
 /// The local Hessian K + G^T N' + N'^T G with G_a = D^-1 [g_a]x at corners, N' = Y^T K + C - Z + S' G / 2,
 /// C_a = [g_a x w]x and Z_a = -[q_a]x.
-void add_rotation_terms(const RotationBatch& batch, const RotationState& state, Lanes (&H)[55][9]) {
+void add_rotation_terms(const RotationBatch& batch, const RestStiffness& stiffness, const Lanes& factor,
+                        const RotationState& state, Lanes (&H)[55][9]) {
   Lanes N[10][9];
-  rotate_stiffness(batch, state.d, N);
+  rotate_stiffness(stiffness, factor, state.d, N);
   const Tensor<Lanes> S = rotation_curvature(batch, state, N);
   Tensor<Lanes> G[4];
   for (int a = 0; a < 10; ++a) add_cross(state.q[a], 1, N[a]);
@@ -174,17 +236,23 @@ void add_rotation_terms(const RotationBatch& batch, const RotationState& state, 
 
 }  // namespace
 
+Lanes factor_of(const RotationBatch& batch) {
+  return batch.history.empty() ? lanes_of(1) : batch.history.front().series.factor();
+}
+
 RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
                                   const std::function<void(int, SimplexGradients<3, 10>&)>& gradients) {
   const Gradients rest[4] = {};
   Response response[4];
   batch.laws.evaluate(Want::tangent, rest, response);
+  const bool kept = !batch.straight || batch.laws.laws.size() > 1;
   SimplexResult<3, 10> stiffness{};
   RotationBatch own{};
   for (int q = 0; q < 4; ++q) {
     SimplexGradients<3, 10> g;
     gradients(q, g);
-    add_stiffness<3, 10>(response[q].tangent, batch.points[q].weight, g, stiffness);
+    if (kept) add_stiffness<3, 10>(response[q].tangent, batch.points[q].weight, g, stiffness);
+    own.shear += batch.points[q].weight * response[q].tangent[packed_at(1, 1)];  // dP_01/dF_01 = mu
     // A corner's linear shape function is its quadratic one plus half of those of its three mid nodes.
     for (int a = 0; a < 4 && q == 0; ++a)
       for (int i = 0; i < 3; ++i) {
@@ -195,8 +263,10 @@ RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
             own.g[a][i] += 0.5 * g.g[4 + k][i];
       }
   }
-  for (int k = 0; k < 55; ++k)
-    for (int i = 0; i < 9; ++i) own.K[k][i] = stiffness.block[k][i];
+  own.ratio = response[0].tangent[packed_at(4, 0)] / response[0].tangent[packed_at(1, 1)];  // dP_11/dF_00 = lambda
+  if (!kept) return own;
+  own.kept.emplace_back();
+  std::memcpy(own.kept.front().block, stiffness.block, sizeof stiffness.block);
   return own;
 }
 
@@ -213,7 +283,8 @@ void begin_step(double dt, RotationBatch& batch) {
     for (std::size_t k = 0; k < history.parts.size(); ++k)
       for (std::size_t a = 0; a < 10; ++a)
         for (int i = 0; i < 3; ++i) sum[a][i] += history.series.fixed(k, history.parts[k][a][i], history.elastic[a][i]);
-    apply_stiffness(batch, sum, history.fixed);
+    RestStiffness room;
+    apply_stiffness(stiffness_of(batch, room), sum, history.fixed);
   }
 }
 
@@ -224,12 +295,14 @@ void end_step(const Lanes (&u)[10][3], RotationBatch& batch) {
   RotationHistory& history = batch.history.front();
   const PronySeries& series = history.series;
   RotationHistory::Displacements force;
-  history.stored = series.rest() * series.scale() * apply_stiffness(batch, state.d, force);
+  RestStiffness room;
+  const RestStiffness& K = stiffness_of(batch, room);
+  history.stored = series.rest() * series.scale() * apply_stiffness(K, state.d, force);
   for (std::size_t k = 0; k < history.parts.size(); ++k) {
     for (std::size_t a = 0; a < 10; ++a)
       for (int i = 0; i < 3; ++i)
         series.advance(k, series.scale() * state.d[a][i] - history.elastic[a][i], history.parts[k][a][i]);
-    const Lanes g = series.terms()[k].g, stored = apply_stiffness(batch, history.parts[k], force);
+    const Lanes g = series.terms()[k].g, stored = apply_stiffness(K, history.parts[k], force);
     history.stored += g > 0.0 ? stored / (g * series.scale()) : Lanes{};  // a term of 0 stores nothing
   }
   for (std::size_t a = 0; a < 10; ++a)
@@ -265,7 +338,8 @@ RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10]
     transposed_times(state.R, x, state.d[a]);
     for (int i = 0; i < 3; ++i) state.d[a][i] -= batch.X[a][i];
   }
-  state.energy = apply_stiffness(batch, state.d, state.q);
+  state.energy =
+      batch.kept.empty() ? apply_hooke(batch, state.d, state.q) : apply_stiffness(batch.kept.front(), state.d, state.q);
   for (const RotationHistory& history : batch.history) relax(history, state);
   for (int a = 0; a < 10; ++a) {
     Vector3 moment;
@@ -301,13 +375,14 @@ void turn(const Tensor<Lanes>& R, const Lanes (&H)[55][9], SimplexResult<3, 10>&
 
 void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact,
                       SimplexResult<3, 10>& result) {
-  if (!exact && batch.history.empty()) return turn(state.R, batch.K, result);
-  const Lanes factor = batch.history.empty() ? lanes_of(1) : batch.history.front().series.factor();
+  RestStiffness room;
+  const RestStiffness& K = stiffness_of(batch, room);
+  if (!exact && batch.history.empty()) return turn(state.R, K.block, result);
+  const Lanes factor = factor_of(batch);
   Lanes H[55][9];
   for (int k = 0; k < 55; ++k)
-    for (int i = 0; i < 9; ++i) H[k][i] = factor * batch.K[k][i];
-  if (!exact) return turn(state.R, H, result);
-  add_rotation_terms(batch, state, H);
+    for (int i = 0; i < 9; ++i) H[k][i] = factor * K.block[k][i];
+  if (exact) add_rotation_terms(batch, K, factor, state, H);
   turn(state.R, H, result);
 }
 

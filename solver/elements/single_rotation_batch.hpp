@@ -21,13 +21,20 @@ struct RotationHistory {
   Lanes stored = {};  ///< energy at the end of the last step
 };
 
-/// What eight elements keep. Unused lanes have K = 0.
+/// The stiffness of eight elements at rest; block (a, b), a <= b, at b(b+1)/2 + a.
+struct RestStiffness {
+  Lanes block[55][9];
+};
+
+/// What eight elements keep. Unused lanes have no stiffness.
 struct RotationBatch {
   Lanes X[10][3];                        ///< reference positions, relative to corner 0
   Lanes g[4][3];                         ///< gradients of the corners' linear shape functions
-  Lanes K[55][9];                        ///< stiffness at rest; block (a, b), a <= b, at b(b+1)/2 + a
+  Lanes shear, ratio;                    ///< reference volume times mu, and lambda/mu; of straight elements of one law
+  std::vector<RestStiffness> kept;       ///< one, or none where shear, ratio and g say it all
   bool exact = true;                     ///< the law asks for the derivative of the force as tangent
   std::vector<RotationHistory> history;  ///< one, or none where elastic
+  std::size_t bytes() const { return sizeof *this + kept.size() * sizeof(RestStiffness); }
 };
 
 /// What one evaluation leaves for the tangent; see make_single_rotation_elements for the letters.
@@ -37,9 +44,12 @@ struct RotationState {
   Lanes energy, J;  ///< J: det of the corners' deformation gradient
 };
 
-/// K and g of a batch; `gradients(q, g)` gives dN/dX at quadrature point q.
+/// Stiffness and g of a batch; `gradients(q, g)` gives dN/dX at quadrature point q.
 RotationBatch make_rotation_batch(const SimplexBatch<3, 10, 4>& batch,
                                   const std::function<void(int, SimplexGradients<3, 10>&)>& gradients);
+
+/// What relaxation leaves of the stiffness in the step that was begun last.
+Lanes factor_of(const RotationBatch& batch);
 
 /// Makes X relative to corner 0.
 void move_corner(RotationBatch& batch);

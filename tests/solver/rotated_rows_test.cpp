@@ -7,15 +7,18 @@
 
 #include <cmath>
 
+#include "solver/elements/gradient_products.hpp"
 #include "solver/equations.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace msml::fe::testing {
 namespace {
 
-/// A bent and twisted beam of two halves with their own moduli, one of them auxetic (lambda < 0).
-Model two_halves() {
-  Model model = beam_model(3, CellKind::tet4, 0.3, Strain::corotated);
+/// A bent and twisted beam of two halves with their own moduli, one of them auxetic (lambda < 0); quadratic elements
+/// have a rotation each.
+Model two_halves(CellKind kind) {
+  Model model = beam_model(3, kind, 0.3, Strain::corotated);
+  if (kind == CellKind::tet10) model.formulation = Formulation::single_rotation;
   Region soft{.name = "soft",
               .law = make_linear_elastic({.youngs_modulus = 2e4, .poisson_ratio = -0.2, .strain = Strain::corotated}),
               .density = 1000};
@@ -55,8 +58,12 @@ Sums three_times(const Equations& equations, const Vector& u) {
   return sums;
 }
 
-TEST(RotatedRows, AreTheSumsOfTheElements) {
-  const Model model = two_halves();
+class RotatedRows : public ::testing::TestWithParam<CellKind> {};
+INSTANTIATE_TEST_SUITE_P(All, RotatedRows, ::testing::Values(CellKind::tet4, CellKind::tet10),
+                         [](const auto& kind) { return std::string(name(kind.param)); });
+
+TEST_P(RotatedRows, AreTheSumsOfTheElements) {
+  const Model model = two_halves(GetParam());
   const Equations equations(model);
   const std::size_t bytes = equations.elements().bytes();
   const Sums sums = three_times(equations, twisted(equations));
@@ -74,8 +81,8 @@ TEST(RotatedRows, AreTheSumsOfTheElements) {
   EXPECT_EQ(sums.found[2].smallest_J_element, sums.found[0].smallest_J_element);
 }
 
-TEST(RotatedRows, AreSymmetricToTheLastBit) {
-  const Model model = two_halves();
+TEST_P(RotatedRows, AreSymmetricToTheLastBit) {
+  const Model model = two_halves(GetParam());
   const Equations equations(model);
   const BlockMatrix K = three_times(equations, twisted(equations)).matrices[2];
   const Pattern& pattern = *K.pattern;
@@ -90,14 +97,41 @@ TEST(RotatedRows, AreSymmetricToTheLastBit) {
     }
 }
 
-TEST(RotatedRows, DoNotDependOnTheNumberOfThreads) {
-  const Model model = two_halves();
+TEST_P(RotatedRows, DoNotDependOnTheNumberOfThreads) {
+  const Model model = two_halves(GetParam());
   const Equations equations(model);
   const Vector u = twisted(equations);
   std::vector<double> alone, together;
   tbb::task_arena(1).execute([&] { alone = three_times(equations, u).matrices[2].values; });
   tbb::task_arena(2).execute([&] { together = three_times(equations, u).matrices[2].values; });
   EXPECT_EQ(alone, together);
+}
+
+// The four-point rule is exact for products of linear functions.
+TEST(GradientProducts, AreTheMeansOverATetrahedron) {
+  const Rule<3> rule = stiffness_rule<3, 10>();
+  const auto corners = Tetrahedron<4>::gradients({});
+  const auto G = [&](int a, int i) {
+    const auto at = [&](int corner) { return corners[static_cast<std::size_t>(corner)][static_cast<std::size_t>(i)]; };
+    const auto ends = Tetrahedron<10>::edges[static_cast<std::size_t>(std::max(a - 4, 0))];
+    return a < 4 ? at(a) : at(ends[0]) + at(ends[1]);
+  };
+  for (int a = 0; a < 10; ++a)
+    for (int b = 0; b < 10; ++b)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+          double mean = 0;
+          for (const auto& point : rule) {
+            const auto g = Tetrahedron<10>::gradients(point.xi);
+            mean += 6 * point.weight * g[static_cast<std::size_t>(a)][static_cast<std::size_t>(i)] *
+                    g[static_cast<std::size_t>(b)][static_cast<std::size_t>(j)];
+          }
+          const GradientProduct& product = gradient_products<10>[static_cast<std::size_t>(16 * a + b)];
+          double sum = product.first * G(a, i) * G(b, j);
+          for (std::size_t n = 0; n < static_cast<std::size_t>(product.count); ++n)
+            sum += product.second * G(product.pairs[n][0], i) * G(product.pairs[n][1], j);
+          EXPECT_NEAR(sum, mean, 1e-14) << a << " " << b;
+        }
 }
 
 }  // namespace
