@@ -22,6 +22,8 @@ struct alignas(64) RotatedTetrahedron {
 template <int nodes>
 class RotatedRows {
  public:
+  /// True if so many elements can be counted.
+  static constexpr bool serves(std::size_t elements) { return elements < (std::size_t(1) << 32) / stride; }
   /// `positions`: of block (a, b) of element e in the pattern, at nodes (nodes e + a) + b.
   RotatedRows(PatternPtr pattern, const std::vector<int>& positions);
   /// Sets `count` elements from `first` on: their rotations, w mu, lambda/mu and the gradients of linear shape

@@ -171,7 +171,7 @@ void fetch(const Batch& batch, bool positions) {
 
 template <int dimension, int nodes, int count>
 bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
-  return dimension == 3 && nodes == 4 && !remembers_ &&
+  return dimension == 3 && nodes == 4 && !remembers_ && RotatedRows<4>::serves(numbering_.elements.size()) &&
          std::all_of(batches_.begin(), batches_.end(),
                      [&](const Batch& batch) { return batch.laws.laws.front()->evaluate_rotated(want, {}, {}); });
 }

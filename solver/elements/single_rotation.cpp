@@ -30,8 +30,9 @@ class SingleRotationElements final : public Elements {
       move_corner(batches_[b]);
       remember(model, batches[b], batches_[b]);
     });
+    by_rows_ = RotatedRows<10>::serves(numbering().elements.size());
     for (const RotationBatch& batch : batches_) {
-      all_made_ = all_made_ && batch.kept.empty();
+      by_rows_ = by_rows_ && batch.kept.empty();
       exact_ = exact_ || batch.exact;
     }
   }
@@ -39,7 +40,7 @@ class SingleRotationElements final : public Elements {
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
     matrices_ += matrix != nullptr;
     // As SimplexElements does.
-    const bool by_rows = matrices_ > 2 && matrix && all_made_ && !(want == Want::tangent && exact_);
+    const bool by_rows = matrices_ > 2 && matrix && by_rows_ && !(want == Want::tangent && exact_);
     if (by_rows && !rows_) rows_.emplace(pattern(), positions_of_blocks<10>(standard_.batches()));
     if (matrix && !by_rows) matrix->set_zero();
     const Assembled found = add_by_colour(standard_.colours(), [&](std::size_t b) {
@@ -132,7 +133,7 @@ class SingleRotationElements final : public Elements {
   SimplexElements<3, 10> standard_;
   std::vector<RotationBatch> batches_;
   std::vector<double> stored_beside_;  ///< of each batch
-  bool all_made_ = true;               ///< no batch keeps its stiffness
+  bool by_rows_ = true;                ///< no batch keeps its stiffness, and rows can count them
   bool exact_ = false;                 ///< a law asks for the derivative of the force as tangent
   mutable int matrices_ = 0;           ///< asked for so far
   mutable std::optional<RotatedRows<10>> rows_;

@@ -28,8 +28,8 @@ constexpr double neo_tangent = 45 * 9 + 45 + 36;                          // thr
 constexpr double gradient(int nodes) { return 15 * nodes + 18 * nodes; }  // dN/dX and H
 constexpr double force(int nodes) { return 18 * nodes + 25; }             // P dN/dX, det F, the energy
 constexpr double stiffness(int nodes) { return 138 * nodes + 54 * nodes * (nodes + 1) / 2.0; }
-constexpr double single_force = polar + 20 * 15 + 36 * 55 + 60;  // both rotations of vectors, K d, energy
-constexpr double single_tangent = 90 * 55;                       // R K R^T of 55 blocks
+constexpr double single_force = polar + 20 * 15 + 4 * (gradient(10) + 40 + force(10));  // both rotations, four points
+constexpr double single_tangent = 10 * 18 + 138 * 18 + 90 * 27;  // R g, the products of gradients, 90 blocks from them
 }  // namespace operations
 
 /// The beam, bent and twisted so that strains are about 0.1 and rotations large.
@@ -118,33 +118,34 @@ void tangent(benchmark::State& state, CellKind kind, int n, bool neo, int thread
         beam.points() * (law + operations::gradient(nodes) + operations::force(nodes) + operations::stiffness(nodes)));
 }
 
-/// Forces and the tangent of one linear solve per step, R K R^T, of linear tetrahedra: rotated gradients are written by
-/// elements and read by rows, which write the matrix.
-void step_tangent_by_rows(benchmark::State& state, int n, int threads) {
-  Beam beam(CellKind::tet4, n, false);
+/// Forces and the tangent of one linear solve per step, R K R^T, of elements with one rotation: rotated gradients are
+/// written by elements and read by rows, which know the places of their parts and write the matrix.
+void step_tangent_by_rows(benchmark::State& state, CellKind kind, int n, int threads) {
+  const bool linear = kind == CellKind::tet4;
+  Beam beam(kind, n, false, linear ? fe::Formulation::standard : fe::Formulation::single_rotation);
   repeat(state, threads, [&] {
     beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, &beam.matrix);
     benchmark::DoNotOptimize(beam.matrix.values.data());
   });
-  const double bytes = force_bytes(beam) + 2 * 128 + 4 * 12 + beam.matrix_bytes() / beam.elements;
+  const int nodes = beam.nodes_per_element;
+  const double bytes = force_bytes(beam) + 2 * 32 * nodes + 4 * nodes * (nodes - 1) +
+                       beam.matrix_bytes() / beam.elements + (linear ? 0 : 8 * 42);  // X, gradients
   const double blocks = 12 * 54 + 12 * 5;  // h_a h_b^T twice and h_a . h_b; R dN/dX
-  count(state, beam.elements, bytes,
-        operations::corotated_stress + operations::gradient(4) + operations::force(4) + blocks);
+  const double linear_flops = operations::corotated_stress + operations::gradient(4) + operations::force(4) + blocks;
+  count(state, beam.elements, bytes, linear ? linear_flops : operations::single_force + operations::single_tangent);
 }
 
-/// The same of quadratic tetrahedra: with a rotation at each of
-/// four points, or with one for the element, whose K is kept.
-void step_tangent(benchmark::State& state, int n, fe::Formulation formulation, int threads) {
-  Beam beam(CellKind::tet10, n, false, formulation);
+/// The same of quadratic tetrahedra with a rotation at each of four points.
+void step_tangent(benchmark::State& state, int n, int threads) {
+  Beam beam(CellKind::tet10, n, false);
   repeat(state, threads, [&] {
     beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, &beam.matrix);
     benchmark::DoNotOptimize(beam.matrix.values.data());
   });
-  const bool single = formulation == fe::Formulation::single_rotation;
-  const double bytes = force_bytes(beam) + 400 + 3 * beam.matrix_bytes() / beam.elements + (single ? 8 * 9 * 55 : 0);
-  const double points = 4 * (operations::corotated_stress + 360 + operations::gradient(10) + operations::force(10) +
-                             operations::stiffness(10));
-  count(state, beam.elements, bytes, single ? operations::single_force + operations::single_tangent : points);
+  const double bytes = force_bytes(beam) + 400 + 3 * beam.matrix_bytes() / beam.elements;
+  count(state, beam.elements, bytes,
+        4 * (operations::corotated_stress + 360 + operations::gradient(10) + operations::force(10) +
+             operations::stiffness(10)));
 }
 
 void matrix_product(benchmark::State& state, CellKind kind, int n, int threads) {
@@ -216,10 +217,9 @@ void add_kernels(int scale) {
   }
   for (const int threads : {1, 2}) {
     const int n = 8 / scale;
-    add("step tangent tet4", threads, [=](auto& s) { step_tangent_by_rows(s, 2 * n, threads); });
-    add("step tangent tet10", threads, [=](auto& s) { step_tangent(s, n, fe::Formulation::standard, threads); });
-    add("step tangent tet10SR", threads,
-        [=](auto& s) { step_tangent(s, n, fe::Formulation::single_rotation, threads); });
+    add("step tangent tet4", threads, [=](auto& s) { step_tangent_by_rows(s, CellKind::tet4, 2 * n, threads); });
+    add("step tangent tet10", threads, [=](auto& s) { step_tangent(s, n, threads); });
+    add("step tangent tet10SR", threads, [=](auto& s) { step_tangent_by_rows(s, CellKind::tet10, n, threads); });
   }
   add("polar decomposition", 1, polar_decomposition);
 }
