@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quadratic tetrahedra with one rotation each and a stiffness matrix made once.
+// Quadratic tetrahedra with one rotation each.
 #pragma once
 #include <memory>
 
@@ -8,8 +8,10 @@
 namespace msml::fe {
 
 /// Tet10 elements of co-rotated linear elasticity. R is the rotation nearest to the deformation gradient of the four
-/// corners (polar_rotation, det R = +1 always), K (30 x 30) the stiffness of the element at rest, computed once with
-/// the four-point rule. With d = R^T x - X at each node the energy is W = d^T K d / 2. The force is its gradient
+/// corners (polar_rotation, det R = +1 always), K (30 x 30) the stiffness of the element at rest by the four-point
+/// rule: kept where edges are curved or moduli differ from point to point, otherwise made anew from few numbers (see
+/// gradient_products), which takes less time than reading it. With d = R^T x - X at each node the energy is W = d^T K d
+/// / 2. The force is its gradient
 ///   f_a = R (q_a - w x g_a),  q = K d,  w = D^-1 m,  m = sum_a d_a x q_a,  D = tr(U) I - U,
 /// g_a the gradients of the corners' linear shape functions (zero at mid nodes), U = R^T F of the corners; so a free
 /// element keeps its angular momentum, which f = R q alone would not. Tangents: `tangent` is the Hessian of W
