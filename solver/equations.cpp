@@ -55,6 +55,7 @@ Equations::Equations(const Model& model)
     if (!region.elements.empty()) {
       small_strain_ = small_strain_ && region.law->small_strain();
       poisson_ratio_ = std::max(poisson_ratio_, region.law->poisson_ratio());
+      smallest_poisson_ratio_ = std::min(smallest_poisson_ratio_, region.law->poisson_ratio());
     }
   for (const Inlay& inlay : model.inlays) small_strain_ = small_strain_ && inlay.region.law->small_strain();
   for (const Region& region : model.regions) has_history_ = has_history_ || !region.prony.tau.empty();
@@ -68,7 +69,8 @@ Equations::Equations(const Model& model)
 
 NodeGeometry Equations::geometry() const {
   const bool tetrahedra = numbering().kind == CellKind::tet4 || numbering().kind == CellKind::tet10;
-  return {X_, edge_ends(numbering()), tetrahedra && numbering().components == 3, poisson_ratio_};
+  return {X_, edge_ends(numbering()), tetrahedra && numbering().components == 3, poisson_ratio_,
+          smallest_poisson_ratio_};
 }
 
 double Equations::total_mass() const {

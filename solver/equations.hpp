@@ -80,6 +80,7 @@ class Equations {
   ScalarMatrix mass_;
   std::vector<LoadSet> loads_;
   double poisson_ratio_ = 0;  ///< the largest of the regions
+  double smallest_poisson_ratio_ = 0.5;
   bool small_strain_ = true, has_followers_ = false, has_dampers_ = false, has_history_ = false;
 };
 

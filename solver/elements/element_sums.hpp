@@ -28,6 +28,7 @@ Lanes gather(const Batch& batch, int a, const double* values) {
 /// The vectors values[3 n .. 3 n + 2] of the nodes of eight elements.
 template <int nodes, class Batch>
 void gather_vectors(const Batch& batch, const double* values, Lanes (&vectors)[nodes][3]) {
+  static_assert(nodes % 2 == 0);
 #ifdef __AVX512F__
   for (int a = 0; a < nodes; a += 2) {
     Lanes rows[lanes];  // lane by lane: a vector and one number more, twice
@@ -47,6 +48,7 @@ void gather_vectors(const Batch& batch, const double* values, Lanes (&vectors)[n
 /// Adds such vectors of the first `count` elements to those of their nodes.
 template <int nodes, class Batch>
 void scatter_vectors(const Batch& batch, const Lanes (&vectors)[nodes][3], double* values) {
+  static_assert(nodes % 2 == 0);
   using Two = double __attribute__((vector_size(16)));
   for (int a = 0; a < nodes; a += 2) {
     Lanes rows[lanes] = {vectors[a][0],     vectors[a][1],     vectors[a][2],     {},

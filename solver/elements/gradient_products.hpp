@@ -24,7 +24,7 @@ constexpr GradientProduct quadratic_product(int a, int b) {
   const auto ends = [](int node) { return Tetrahedron<10>::edges[static_cast<std::size_t>(node - 4)]; };
   const auto other = [&](int node, int corner) { return ends(node)[0] == corner ? ends(node)[1] : ends(node)[0]; };
   const auto holds = [&](int node, int corner) { return ends(node)[0] == corner || ends(node)[1] == corner; };
-  if (a < 4 && b < 4) return {.first = a == b ? equal : apart};
+  if (a < 4 && b < 4) return {.first = a == b ? equal : apart, .second = mid};
   GradientProduct product{.first = a < 4 || b < 4 ? apart : mid, .second = mid};
   if (a < 4) {
     if (holds(b, a)) product.add(a, other(b, a));

@@ -8,9 +8,9 @@
 
 namespace msml::fe {
 
-/// What the stiffness of a straight tetrahedron with Hooke's law, turned by R, is made of: with the reference volume w,
-/// h_a = sqrt(w mu) R G_a and D_ab = h_a h_b^T in the place of G_a G_b^T in gradient_products, its blocks are
-/// K_ab = D^T + (lambda/mu) D + tr(D) I.
+/// What the stiffness of a straight tetrahedron with Hooke's law, turned by R, is made of: with the reference volume w
+/// and D_ab what gradient_products says, with h_a = sqrt(w mu) R G_a for G_a, its blocks are K_ab = D_ab^T +
+/// (lambda/mu) D_ab + tr(D_ab) I.
 template <int nodes>
 struct alignas(64) RotatedTetrahedron {
   double h[nodes][4] = {};  ///< [a][0..2]; [a][3]: lambda/mu

@@ -15,6 +15,7 @@ struct NodeGeometry {
       ends;                  ///< of each mid node the ends of its edge; {-1, -1} at other nodes; empty: none
   bool solid = true;         ///< the unknowns are the displacements of a body of tetrahedra
   double poisson_ratio = 0;  ///< the largest of the body
+  double smallest_poisson_ratio = 0;
 };
 
 }  // namespace msml::fe

@@ -6,7 +6,7 @@
 
 namespace msml::fe {
 
-/// A view: rows and columns of fixed unknowns are zero, but for a unit diagonal.
+/// A view: rows and columns of fixed unknowns are zero, but for the diagonal, which is kept where it is positive.
 class FreeBlocks {
  public:
   FreeBlocks(const BlockMatrix& A, const Mask& mask) : matrix(A), fixed(mask) {}
@@ -24,7 +24,7 @@ class FreeBlocks {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
         if (fixed[static_cast<std::size_t>(3 * r + i)] || fixed[static_cast<std::size_t>(3 * c + j)])
-          out[3 * j + i] = r == c && i == j ? 1.0 : 0.0;
+          out[3 * j + i] = r != c || i != j ? 0.0 : a[4 * i] > 0 ? a[4 * i] : 1.0;
   }
 
  private:

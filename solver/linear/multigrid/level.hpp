@@ -20,7 +20,10 @@ class Level {
     matrix_.sparsity = {view.rows(), view.offsets, view.columns};
     halves_.clear();
     if (halved && B == 3) halves_.allocate(matrix_.sparsity);
-    if (halves_.empty()) matrix_.allocate();
+    if (halves_.empty())
+      matrix_.allocate();
+    else
+      matrix_.forget_values();
     std::vector<double> diagonals(B * B * static_cast<std::size_t>(nodes()));
     for_rows(nodes(), 512, [&](int r) {
       const int begin = view.offsets[static_cast<std::size_t>(r)], end = view.offsets[static_cast<std::size_t>(r) + 1];
@@ -64,7 +67,7 @@ class Level {
            (inverse_single_.size() + direction_.size() + other_.size()) * sizeof(float);
   }
 
-  bool halved = false;  ///< smooths with a matrix in half precision, where there is one; B = 3
+  bool halved = false;  ///< set() takes the matrix in half precision, where there is one; B = 3
   int degree = 2;       ///< of the smoother
   double lowest = 0.1;  ///< of the radius: errors below are left to the coarser grid
 

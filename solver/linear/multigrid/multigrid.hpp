@@ -71,7 +71,7 @@ class Multigrid {
   std::function<void()> pulse_;
   Mask fixed_;
   bool made_ = false, fresh_ = true;  ///< fresh_: the grids are being made
-  bool heavy_ = false;                ///< the matrix is that of a time step, with inertia at every node
+  bool heavy_ = false;                ///< inertia allows half precision on the fine grid
   std::optional<Corners> corners_;
   Grid<3> fine_, linear_;
   std::optional<Step<3, 3>> wide_;  ///< from quadratic to linear elements, where the body is nearly incompressible

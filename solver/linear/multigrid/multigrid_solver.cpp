@@ -51,8 +51,9 @@ class MultigridSolver final : public LinearSystem {
           *matrix_, fixed_, [this](const Vector& r, double length, Vector& z) { precondition(r, length, z); }, target,
           limit, space_, r_, x, taken);
       iterations += taken;
-      if (usual_ == 0 && status == LinearStatus::done && decades >= 2) usual_ = static_cast<double>(taken) / decades;
-      stale_ = judged && static_cast<double>(taken) > usual_ * decades + worth_a_set_up;
+      if (fresh_ && usual_ == 0 && status == LinearStatus::done && decades >= 2)
+        usual_ = static_cast<double>(taken) / decades;
+      stale_ = stale_ || (judged && static_cast<double>(taken) > usual_ * decades + worth_a_set_up);
       if (status == LinearStatus::limit && fresh_) return status;
       if (status == LinearStatus::not_positive_definite && fresh_) return status;
       if (status != LinearStatus::done) {
@@ -168,8 +169,7 @@ class MultigridSolver final : public LinearSystem {
   const BlockMatrix* matrix_ = nullptr;
   Mask fixed_;
   bool usable_ = false, fresh_ = false, stale_ = false;
-  double usual_ = 0;  ///< iterations for a tenth of the residual, in the first solve of two tenths or more after the
-                      ///< last set-up; 0 before
+  double usual_ = 0;  ///< iterations for a tenth of the residual with grids of the matrix itself; 0: not known
   Vector displacement_, reference_;
   std::vector<float> rotations_;  ///< 9 per node, row by row; empty: none
   Vector b_, r_;
