@@ -15,9 +15,11 @@ bool Coarsest::set(const Blocks<double, B, B>& A) {
          p < A.sparsity.offsets[static_cast<std::size_t>(r) + 1]; ++p)
       full.block<B, B>(B * r, B * A.sparsity.columns[static_cast<std::size_t>(p)]) =
           Eigen::Map<const Eigen::Matrix<double, B, B>>(A.block(p));
-  const Eigen::LLT<Eigen::MatrixXd> factor(full);
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(full);  // in the place of the matrix
   if (factor.info() != Eigen::Success) return false;
-  inverse_ = factor.solve(Eigen::MatrixXd::Identity(full.rows(), full.cols())).cast<float>();
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(full.rows(), full.cols());
+  factor.solveInPlace(inverse);
+  inverse_ = inverse.cast<float>();
   return inverse_.allFinite();
 }
 
