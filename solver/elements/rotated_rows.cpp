@@ -102,11 +102,7 @@ void RotatedRows<nodes>::set(int first, int count, const Tensor<Lanes>& R, Lanes
   for (int a = 0; a < 4; ++a)
     for (int i = 0; i < 3; ++i)
       h[a][i] = size * (R(i, 0) * gradients[a][0] + R(i, 1) * gradients[a][1] + R(i, 2) * gradients[a][2]);
-  for (int a = 4; a < nodes; ++a)
-    for (int i = 0; i < 3; ++i) {
-      const auto [c, d] = Tetrahedron<10>::edges[at(a - 4)];
-      h[a][i] = h[c][i] + h[d][i];
-    }
+  if constexpr (nodes == 10) set_mid_gradients(h);
   for (int a = 0; a < nodes; a += 2) {
     Lanes entries[lanes] = {h[a][0], h[a][1], h[a][2], ratio, h[a + 1][0], h[a + 1][1], h[a + 1][2], ratio};
     transpose(entries);

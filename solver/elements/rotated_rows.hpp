@@ -45,6 +45,10 @@ class RotatedRows {
   std::vector<unsigned> parts_;  ///< stride element + 16 a + b; and a few more that are looked at
 };
 
+/// Matrices that elements add to one by one before rows take over: rows take room that is free once the first linear
+/// solution is set up, and pay off in many time steps.
+inline constexpr int matrices_before_rows = 2;
+
 /// The positions that RotatedRows wants, of elements in batches.
 template <int nodes, class Batches>
 std::vector<int> positions_of_blocks(const Batches& batches) {

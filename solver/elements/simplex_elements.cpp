@@ -208,9 +208,9 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
-  // The rows take room that is free once the first linear solution is set up, and pay off in many time steps.
   matrices_ += matrix != nullptr;
-  if (matrix && matrices_ > 2 && rotated_[static_cast<std::size_t>(want)]) return add_rotated(u, want, force, *matrix);
+  if (matrix && matrices_ > matrices_before_rows && rotated_[static_cast<std::size_t>(want)])
+    return add_rotated(u, want, force, *matrix);
   if (matrix) matrix->set_zero();
   return add_by_colour(colours_, [&](std::size_t b) {
     if (matrix) fetch_blocks(batches_[b], *matrix);

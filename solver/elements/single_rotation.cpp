@@ -39,8 +39,7 @@ class SingleRotationElements final : public Elements {
 
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
     matrices_ += matrix != nullptr;
-    // As SimplexElements does.
-    const bool by_rows = matrices_ > 2 && matrix && by_rows_ && !(want == Want::tangent && exact_);
+    const bool by_rows = matrices_ > matrices_before_rows && matrix && by_rows_ && !(want == Want::tangent && exact_);
     if (by_rows && !rows_) rows_.emplace(pattern(), positions_of_blocks<10>(standard_.batches()));
     if (matrix && !by_rows) matrix->set_zero();
     const Assembled found = add_by_colour(standard_.colours(), [&](std::size_t b) {

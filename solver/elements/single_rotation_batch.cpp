@@ -50,11 +50,8 @@ Tensor<Lanes> inverse_of(const Tensor<Lanes>& D, const Tensor<Lanes>& U) {
 /// The stiffness of straight elements of one law, from what gradient_products says: made faster than read.
 void make_stiffness(const RotationBatch& batch, RestStiffness& K) {
   Lanes G[10][3];
-  for (int a = 0; a < 10; ++a)
-    for (int i = 0; i < 3; ++i) {
-      const auto ends = Tetrahedron<10>::edges[static_cast<std::size_t>(std::max(a - 4, 0))];
-      G[a][i] = a < 4 ? batch.g[a][i] : batch.g[ends[0]][i] + batch.g[ends[1]][i];
-    }
+  std::memcpy(G, batch.g, sizeof batch.g);
+  set_mid_gradients(G);
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
       const GradientProduct& product = gradient_products<10>[static_cast<std::size_t>(16 * a + b)];
