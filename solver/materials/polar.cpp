@@ -15,23 +15,35 @@ double largest(Lanes a) {
   return a[0];
 }
 
-/// One Newton step, scaled where that brings the stretches together; returns the largest change |dX|^2 in any lane.
-double newton_step(Tensor<Lanes>& X, bool scaled) {
-  const Tensor<Lanes> cof = cofactor(X);
-  const Lanes inverse_det = 1.0 / determinant(X, cof);
-  Lanes a = lanes_of(0.5), b = 0.5 * inverse_det;
-  if (scaled) {
-    const Lanes g = root(root(square_sum(cof) * inverse_det * inverse_det / square_sum(X)));
-    a *= g;
-    b /= g;
+/// The rotations of points that are easy; anything for the others, which get no say in when to end.
+///
+/// The trace t of U is the largest root of t^4 - 2 |F|^2 t^2 - 8 det F t + |F|^4 - 4 |cof F|^2, a simple one: there the
+/// slope is 8 d, d = (s1 + s2) (s2 + s3) (s3 + s1) of the stretches. Newton's method comes down to it from
+/// sqrt(3) |F|, which is nearly t where stretches are nearly equal. By the characteristic equation of U then
+/// d R = (t^2 + |F|^2)/2 F + t cof F - F F^T F, and |R|^2 = 3.
+Tensor<Lanes> rotations(const Tensor<Lanes>& F, const Tensor<Lanes>& cof, Lanes det) {
+  Lanes C[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = i; j < 3; ++j) C[i][j] = C[j][i] = F(0, i) * F(0, j) + F(1, i) * F(1, j) + F(2, i) * F(2, j);
+  const Lanes norm2 = C[0][0] + C[1][1] + C[2][2], last = norm2 * norm2 - 4.0 * square_sum(cof);
+  Lanes t = root(3.0 * norm2);
+  // Convergence is quadratic: a change below 1e-8 leaves an error of 1e-16.
+  constexpr double done = 1e-8 * 1e-8;
+  double change = 1;
+  for (int step = 0; step < 20 && change > done; ++step) {
+    const Lanes square = t * t, slope = (square - norm2) * t - 2.0 * det;
+    const Lanes excess = ((square - 2.0 * norm2) * t - 8.0 * det) * t + last, down = excess / (4.0 * slope);
+    t -= down;
+    change = largest(down * down / square);
   }
-  Lanes change{};
-  for (int k = 0; k < 9; ++k) {
-    const Lanes next = a * X.c[k] + b * cof.c[k], difference = next - X.c[k];
-    change += difference * difference;
-    X.c[k] = next;
-  }
-  return largest(change);
+  const Lanes of_F = 0.5 * (t * t + norm2);
+  Tensor<Lanes> R;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      R(i, j) = of_F * F(i, j) + t * cof(i, j) - (F(i, 0) * C[0][j] + F(i, 1) * C[1][j] + F(i, 2) * C[2][j]);
+  const Lanes scale = root(3.0 / square_sum(R));  // more exact than 1/d, which knows t to a few digits less
+  for (Lanes& entry : R.c) entry *= scale;
+  return R;
 }
 
 }  // namespace
@@ -44,29 +56,26 @@ Mat3 polar_rotation(const Mat3& F) {
 }
 
 Tensor<Lanes> polar_rotation(const Tensor<Lanes>& F) {
-  // A cube has det^2 / |F|^6 = 1/27; below 1e-4 of that the iteration would lose digits.
-  const Lanes norm2 = square_sum(F), det = determinant(F);
+  // A cube has det^2 / |F|^6 = 1/27; below 1e-4 of that digits would be lost.
+  const Tensor<Lanes> cof = cofactor(F);
+  const Lanes norm2 = square_sum(F), det = determinant(F, cof);
   const auto easy = (det > 0.0) & (27 * det * det > 1e-4 * norm2 * norm2 * norm2);
-  const bool any_hard = !(largest(easy ? lanes_of(0) : lanes_of(1)) < 1);
-  Tensor<Lanes> X = F;
-  if (any_hard)
-    for (int i = 0; i < lanes; ++i)
-      if (!easy[i])
-        for (int k = 0; k < 9; ++k) X.c[k][i] = k % 4 == 0 ? 1 : 0;
-  // Convergence is quadratic: a change below 1e-8 leaves an error of 1e-16. Scaling changes nothing near the end, nor
-  // where |F|^2 is nearly the 3 of rotations.
-  constexpr double near = 0.3 * 0.3, done = 1e-8 * 1e-8;
-  double change = newton_step(X, largest((norm2 - 3.0) * (norm2 - 3.0)) > near);
-  for (int iteration = 1; iteration < 20 && !(change < done); ++iteration) change = newton_step(X, change > near);
-  if (any_hard)
-    for (int i = 0; i < lanes; ++i) {
-      if (easy[i]) continue;
-      Mat3 f;
-      for (int k = 0; k < 9; ++k) f(k / 3, k % 3) = F.c[k][i];
-      const Mat3 r = f.allFinite() ? polar_rotation(f) : Mat3::Identity();
-      for (int k = 0; k < 9; ++k) X.c[k][i] = r(k / 3, k % 3);
-    }
-  return X;
+  if (largest(easy ? lanes_of(0) : lanes_of(1)) < 1) return rotations(F, cof, det);
+
+  Tensor<Lanes> safe = F;
+  for (int i = 0; i < lanes; ++i)
+    if (!easy[i])
+      for (int k = 0; k < 9; ++k) safe.c[k][i] = k % 4 == 0 ? 1 : 0;
+  const Tensor<Lanes> safe_cof = cofactor(safe);
+  Tensor<Lanes> R = rotations(safe, safe_cof, determinant(safe, safe_cof));
+  for (int i = 0; i < lanes; ++i) {
+    if (easy[i]) continue;
+    Mat3 f;
+    for (int k = 0; k < 9; ++k) f(k / 3, k % 3) = F.c[k][i];
+    const Mat3 r = f.allFinite() ? polar_rotation(f) : Mat3::Identity();
+    for (int k = 0; k < 9; ++k) R.c[k][i] = r(k / 3, k % 3);
+  }
+  return R;
 }
 
 }  // namespace msml::fe
