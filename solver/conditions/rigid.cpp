@@ -16,7 +16,8 @@
 namespace msml::fe {
 namespace {
 
-/// For each point the smallest point id of its connected part, or -1 where it belongs to no element.
+/// For each point the number of its connected part, in the order of their first points, or -1 where it belongs to no
+/// element.
 std::vector<int> connected_parts(const Model& model) {
   std::vector<int> parent(static_cast<std::size_t>(model.mesh->point_count()), -1);
   const auto root_of = [&](int n) {
@@ -42,7 +43,13 @@ std::vector<int> connected_parts(const Model& model) {
     if (parent[static_cast<std::size_t>(mass.node)] < 0) parent[static_cast<std::size_t>(mass.node)] = mass.node;
   for (std::size_t n = 0; n < parent.size(); ++n)
     if (parent[n] >= 0) parent[n] = root_of(static_cast<int>(n));
-  return parent;
+  std::vector<int> part_of(parent.size(), -1);
+  for (int n = 0, parts = 0; n < static_cast<int>(parent.size()); ++n) {
+    const int first = parent[static_cast<std::size_t>(n)];
+    if (first >= 0)
+      part_of[static_cast<std::size_t>(n)] = first == n ? parts++ : part_of[static_cast<std::size_t>(first)];
+  }
+  return part_of;
 }
 
 using Gram = Eigen::Matrix<double, 6, 6>;  ///< sum of c c^T, c = what one component of one node sees of the 6 motions
@@ -74,15 +81,15 @@ long rank(const Gram& gram) {
 }
 
 std::vector<Part> measure_parts(const Mesh& mesh, const std::vector<int>& part_of, int components) {
-  std::vector<Part> parts(part_of.size());
+  const int count = part_of.empty() ? 0 : *std::max_element(part_of.begin(), part_of.end()) + 1;
+  std::vector<Part> parts(static_cast<std::size_t>(count));
   for (std::size_t n = 0; n < part_of.size(); ++n) {
     if (part_of[n] < 0) continue;
     Part& part = parts[static_cast<std::size_t>(part_of[n])];
     ++part.points;
     part.centre += mesh.points.row(static_cast<Eigen::Index>(n)).transpose();
   }
-  for (Part& part : parts)
-    if (part.points > 0) part.centre /= part.points;
+  for (Part& part : parts) part.centre /= part.points;
   for (std::size_t n = 0; n < part_of.size(); ++n) {
     if (part_of[n] < 0) continue;
     Part& part = parts[static_cast<std::size_t>(part_of[n])];
@@ -190,7 +197,7 @@ FreeMotions free_motions(const Model& model, const Step& step, const Numbering& 
   FreeMotions free;
   for (std::size_t id = 0; id < parts.size(); ++id) {
     const Part& part = parts[id];
-    if (part.points == 0 || rank(part.all) == rank(part.held)) continue;
+    if (rank(part.all) == rank(part.held)) continue;
     const Eigen::SelfAdjointEigenSolver<Gram> solver(part.held);
     const double largest = std::max(solver.eigenvalues().maxCoeff(), 1.0);
     const std::size_t before = free.modes.size();
@@ -256,7 +263,7 @@ void refuse_unbalanced(const Model& model, const Step& step, const Numbering& nu
   Motion6 push = Motion6::Zero();
   Gram free = Gram::Zero(), each;
   for (std::size_t id = 0; id < parts.size(); ++id) {
-    if (parts[id].points == 0 || rank(parts[id].all) == rank(parts[id].held)) continue;
+    if (rank(parts[id].all) == rank(parts[id].held)) continue;
     const Motion6 found = push_on(mesh, numbering, part_of, static_cast<int>(id), parts[id], loads, each);
     if (found.norm() > push.norm()) pushed = &parts[id], push = found, free = each;
   }
@@ -277,7 +284,6 @@ void check_held(const Model& model, const Step& step) {
   std::vector<Part> parts = measure_parts(mesh, part_of, components(model));
   hold(model, step, part_of, parts);
   for (const Part& part : parts) {
-    if (part.points == 0) continue;
     const long motions = rank(part.all) - rank(part.absent), free = rank(part.all) - rank(part.held);
     if (free > 0 && is_scalar(model))
       throw Error(fmt::format(
