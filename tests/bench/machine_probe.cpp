@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this machine can do at most: memory bandwidth and multiply-adds, as one line of JSON.
+// What this machine can do at most: memory bandwidth and multiply-adds, as one line of JSON. `wake GB` wakes it
+// instead.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <barrier>
 #include <chrono>
+#include <cstdlib>
 #include <memory>
+#include <string>
 #include <thread>
 #include <vector>
+
+#include "tests/bench/wake.hpp"
 
 namespace {
 
@@ -81,9 +86,19 @@ double multiply_adds(int threads) {
   return sums[0] > 0 ? 2.0 * 8 * chains * rounds * threads / seconds : 0;
 }
 
+/// A virtual machine lends free memory to others too: touches so much of it.
+void wake(double gigabytes) {
+  const auto size = static_cast<std::size_t>(1e9 * gigabytes / std::max(1u, std::thread::hardware_concurrency()));
+  msml::wake_processors(0.1, [&] {
+    const std::unique_ptr<volatile char[]> memory(new volatile char[size]);
+    for (std::size_t k = 0; k < size; k += 4096) memory[k] = 1;
+  });
+}
+
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (argc == 3 && std::string(argv[1]) == "wake") return wake(std::atof(argv[2])), 0;
   fmt::print("{{\"triad_1\": {:.2f}, \"triad_2\": {:.2f}, \"fma_1\": {:.1f}, \"fma_2\": {:.1f}, \"processors\": {}}}\n",
              1e-9 * triad(1), 1e-9 * triad(2), 1e-9 * multiply_adds(1), 1e-9 * multiply_adds(2),
              std::thread::hardware_concurrency());

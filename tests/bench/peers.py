@@ -76,12 +76,13 @@ def ways(folder, row):
     return found
 
 
-def run_beside(folder, row, say):
+def run_beside(folder, row, wake, say):
     """One run of every peer on a row; a peer that fails is told of and left out."""
     results = []
     for peer, method, threads, run in ways(folder, row):
         say(f"{peer} ({method}): {row.key()}")
         try:
+            wake(row)
             result = run()
         except (RuntimeError, subprocess.CalledProcessError, KeyError) as error:
             say(f"{peer} failed: {error}")

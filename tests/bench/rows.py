@@ -120,6 +120,12 @@ def run_scene(binaries, row):
     return {"answer": seconds, "total": seconds}
 
 
+def wake(binaries, row):
+    """Has as much memory as a row may need at hand; otherwise the system's share depends on what ran before. The same
+    before the peers."""
+    subprocess.run([os.path.join(binaries, "machine_probe"), "wake", str(row.needs_gb)], check=True)
+
+
 def run_row(binaries, row):
     if row.work in ("step", "push", "static", "neo"):
         return run_beam(binaries, row)
