@@ -95,12 +95,7 @@ PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int no
   return pattern;
 }
 
-void BlockMatrix::set_zero() {
-  values.resize(9 * pattern->columns.size());
-  tbb::parallel_for(Range(0, values.size(), 1 << 16), [&](const Range& r) {
-    std::fill(values.begin() + static_cast<long>(r.begin()), values.begin() + static_cast<long>(r.end()), 0.0);
-  });
-}
+void BlockMatrix::set_zero() { fe::set_zero(values, 9 * pattern->columns.size()); }
 
 void BlockMatrix::assign(const BlockMatrix& A, double s, const ScalarMatrix& M) {
   values.resize(A.values.size());

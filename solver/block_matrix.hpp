@@ -6,6 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "solver/numbers.hpp"
+
 namespace msml::fe {
 
 using Vector = Eigen::VectorXd;  ///< 3 numbers per node, node after node
@@ -29,15 +31,15 @@ PatternPtr make_pattern(int count, const std::vector<int>& element_nodes, int no
 /// values[p] times the 3 x 3 identity is the block at position p.
 struct ScalarMatrix {
   PatternPtr pattern;
-  std::vector<double> values;
+  Numbers<double> values;
   explicit ScalarMatrix(PatternPtr p) : pattern(std::move(p)), values(pattern->columns.size(), 0.0) {}
 };
 
 /// values[9 p + 3 i + j] is entry (i, j) of the block at position p.
 struct BlockMatrix {
   PatternPtr pattern;
-  std::vector<double> values;
-  explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)), values(9 * pattern->columns.size(), 0.0) {}
+  Numbers<double> values;
+  explicit BlockMatrix(PatternPtr p) : pattern(std::move(p)) { set_zero(); }
   /// With room for `room` numbers only, until assign() or set_zero() is called.
   BlockMatrix(PatternPtr p, std::size_t room) : pattern(std::move(p)), values(room, 0.0) {}
   void set_zero();

@@ -123,7 +123,7 @@ Saddle::Saddle(const Equations& equations, const Supports& supports, const Mask&
 LinearStatus Saddle::factor(const BlockMatrix& tangent) {
   const Pattern& pattern = *tangent.pattern;
   const int body = equations_.numbering().body_nodes();
-  const std::vector<double>& mass = equations_.mass().values;
+  const Numbers<double>& mass = equations_.mass().values;
   double coupling = 0;
   matrix_.values = tangent.values;
   for (int row = 0; row < pattern.nodes(); ++row)

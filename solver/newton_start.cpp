@@ -92,7 +92,7 @@ Vector Newton::initial_acceleration(Vector& u, const Vector& v, const ScaledLoad
   } else {
     a += without_pressures(equations_, force, given, supports, effective_);
   }
-  std::vector<double>().swap(effective_.values);  // time steps need not have this room
+  Numbers<double>().swap(effective_.values);  // time steps need not have this room
   multiply(equations_.mass(), a, forces_.inertia);
   return a;
 }

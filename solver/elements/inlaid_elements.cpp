@@ -83,8 +83,7 @@ class Inner {
   }
 
   /// outer += T^T inner T for matrices with `width` numbers per pair of nodes.
-  void spread(const Pattern& pattern, const std::vector<double>& inner, std::size_t width,
-              std::vector<double>& outer) const {
+  void spread(const Pattern& pattern, const Numbers<double>& inner, std::size_t width, Numbers<double>& outer) const {
     for (std::size_t row = 0; row < holders_.size(); ++row)
       for (int p = pattern.offsets[row]; p < pattern.offsets[row + 1]; ++p) {
         const double* block = inner.data() + width * static_cast<std::size_t>(p);

@@ -58,7 +58,7 @@ Assembly assemble(const Model& model, bool lumped = false) {
   return a;
 }
 
-double difference(const std::vector<double>& a, const std::vector<double>& b) {
+double difference(const Numbers<double>& a, const Numbers<double>& b) {
   double most = 0, size = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
     most = std::max(most, std::abs(a[i] - b[i]));

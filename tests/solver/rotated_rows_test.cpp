@@ -105,7 +105,7 @@ TEST_P(RotatedRows, DoNotDependOnTheNumberOfThreads) {
   const Model model = two_halves(GetParam());
   const Equations equations(model);
   const Vector u = twisted(equations);
-  std::vector<double> alone, together;
+  Numbers<double> alone, together;
   tbb::task_arena(1).execute([&] { alone = three_times(equations, u).matrices[2].values; });
   tbb::task_arena(2).execute([&] { together = three_times(equations, u).matrices[2].values; });
   EXPECT_EQ(alone, together);

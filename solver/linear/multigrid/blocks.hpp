@@ -12,6 +12,8 @@
 #include <immintrin.h>
 #endif
 
+#include "solver/numbers.hpp"
+
 namespace msml::fe {
 
 /// Where the blocks of a sparse matrix are: row r has columns[offsets[r] .. offsets[r + 1]), ascending.
@@ -45,11 +47,11 @@ void for_rows(int rows, int piece, const Body& body) {
 template <class T, int R, int C>
 struct Blocks {
   Sparsity sparsity;
-  std::vector<T> values;
+  Numbers<T> values;
 
   static constexpr std::size_t size = R * C;
   SparsityView view() const { return {sparsity.offsets, sparsity.columns}; }
-  void allocate() { values.assign(size * sparsity.columns.size() + 8, T(0)); }
+  void allocate() { set_zero(values, size * sparsity.columns.size() + 8); }
   T* block(int p) { return values.data() + size * static_cast<std::size_t>(p); }
   const T* block(int p) const { return values.data() + size * static_cast<std::size_t>(p); }
   /// The block at position p of any row.
@@ -60,7 +62,7 @@ struct Blocks {
     return std::clamp(static_cast<int>(32768 * static_cast<std::size_t>(sparsity.rows()) / numbers), 8, 1024);
   }
   /// Gives the numbers back.
-  void forget_values() { std::vector<T>().swap(values); }
+  void forget_values() { Numbers<T>().swap(values); }
   std::size_t bytes() const {
     return values.size() * sizeof(T) + (sparsity.columns.size() + sparsity.offsets.size()) * sizeof(int);
   }

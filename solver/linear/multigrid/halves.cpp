@@ -8,7 +8,7 @@ namespace msml::fe {
 
 #ifdef __AVX512F__
 void Halves::allocate(const Sparsity& sparsity) {
-  values_.assign(9 * sparsity.columns.size() + 16, 0);
+  set_zero(values_, 9 * sparsity.columns.size() + 16);
   scales_.assign(static_cast<std::size_t>(sparsity.rows()), 1);
 }
 

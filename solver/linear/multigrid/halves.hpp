@@ -23,8 +23,8 @@ class Halves {
   Single4 row_product(const Sparsity& sparsity, int r, const float* x) const;
 
  private:
-  std::vector<std::uint16_t> values_;  ///< 9 for each block, as Blocks has them, and a few more
-  std::vector<float> scales_;          ///< of each row
+  Numbers<std::uint16_t> values_;  ///< 9 for each block, as Blocks has them, and a few more
+  std::vector<float> scales_;      ///< of each row
 };
 
 #ifdef __AVX512F__
