@@ -239,8 +239,7 @@ Deformation deformation(const ElementPoints& points, bool scalar) {
     d.smallest_J = 1;
     return d;
   }
-  Tensor<Lanes> F = points.gradient;
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+  const Tensor<Lanes> F = deformation_gradient(points.gradient);
   const Tensor<Lanes> R = polar_rotation(F);
   for (int q = 0; q < points.count; ++q) {
     const Mat3 f = at(F, q), r = at(R, q);

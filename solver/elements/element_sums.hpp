@@ -132,11 +132,7 @@ void fetch_blocks(const Batch& batch, const BlockMatrix& matrix) {
 }
 
 /// det F of F = I + H.
-inline Lanes volume_ratio(const Gradients& H) {
-  Tensor<Lanes> F = H;
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
-  return determinant(F);
-}
+inline Lanes volume_ratio(const Gradients& H) { return determinant(deformation_gradient(H)); }
 
 /// Notes energies (with the weight) and det F of the first `count` lanes; `elements` are their cell ids.
 inline void note(const Lanes& energy, const Lanes& J, int count, const int* elements, Assembled& found) {

@@ -20,15 +20,9 @@ Tensor<Lanes> full(const SymmetricLanes& s) {
   return t;
 }
 
-Tensor<Lanes> deformation(const Gradients& H) {
-  Tensor<Lanes> F = H;
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
-  return F;
-}
-
 /// S = F^-1 P, made symmetric against round-off.
 SymmetricLanes second_piola(const Gradients& H, const Tensor<Lanes>& P) {
-  const Tensor<Lanes> F = deformation(H), cof = cofactor(F);
+  const Tensor<Lanes> F = deformation_gradient(H), cof = cofactor(F);
   const Lanes J = determinant(F, cof);
   SymmetricLanes S;
   for (int k = 0; k < 6; ++k) {
@@ -62,7 +56,7 @@ Tensor<Lanes> positive_part(const Tensor<Lanes>& Q) {
 
 /// Energy and stress of Q: Q : E and F Q, or Q : e and Q.
 void add_fixed(const Tensor<Lanes>& Q, const Gradients& H, bool small_strain, Response& response) {
-  const Tensor<Lanes> F = deformation(H);
+  const Tensor<Lanes> F = deformation_gradient(H);
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
       Lanes quadratic{}, stress = small_strain ? Q(i, j) : Lanes{};

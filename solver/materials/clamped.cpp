@@ -129,8 +129,7 @@ class ClampedLaw final : public Law {
  private:
   /// Recomputes the lanes that have a stretch below c; true if there are any.
   bool replace(const Gradients& H, bool tangent, Response& out) const {
-    Tensor<Lanes> F = H;
-    for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+    const Tensor<Lanes> F = deformation_gradient(H);
     const Lanes J = determinant(F), bound = 0.5 * c_ * square_sum(F);
     bool any = false;
     for (int lane = 0; lane < lanes; ++lane) {

@@ -44,8 +44,8 @@ struct Polar {
 
 /// The decomposition of I + H, given as H.
 template <class T>
-Polar<T> decompose(Tensor<T> F) {
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+Polar<T> decompose(const Tensor<T>& H) {
+  const Tensor<T> F = deformation_gradient(H);
   Polar<T> p{polar_rotation(F), {}};
   p.strain = sym(product(p.R, F, true));
   for (int i = 0; i < 3; ++i) p.strain(i, i) -= 1.0;

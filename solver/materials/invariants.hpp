@@ -46,11 +46,7 @@ struct Invariants {
     }
     return d;
   }
-  Tensor<T> F() const {
-    Tensor<T> f = H;
-    for (int i = 0; i < 3; ++i) f(i, i) += 1.0;
-    return f;
-  }
+  Tensor<T> F() const { return deformation_gradient(H); }
 };
 
 /// A += c I (the second derivative of F:F/2).

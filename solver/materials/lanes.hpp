@@ -44,18 +44,25 @@ inline void transpose(Lanes (&v)[lanes]) {
 }
 
 inline double ln1p(double x) { return std::log1p(x); }
+inline double exp1m(double x) { return std::expm1(x); }
+#if defined __AVX512F__ && defined __GLIBC__ && __GLIBC_PREREQ(2, 35)
+// Eight at once, as glibc's libmvec has them: within two units of the last digit.
+extern "C" Lanes eight_ln1p(Lanes) asm("_ZGVeN8v_log1p");
+extern "C" Lanes eight_exp1m(Lanes) asm("_ZGVeN8v_expm1");
+inline Lanes ln1p(Lanes x) { return eight_ln1p(x); }
+inline Lanes exp1m(Lanes x) { return eight_exp1m(x); }
+#else
 /// Elementwise ln(1 + x), accurate for small x; NaN below -1.
 inline Lanes ln1p(Lanes x) {
   for (int i = 0; i < lanes; ++i) x[i] = std::log1p(x[i]);
   return x;
 }
-
-inline double exp1m(double x) { return std::expm1(x); }
 /// Elementwise exp(x) - 1, accurate for small x.
 inline Lanes exp1m(Lanes x) {
   for (int i = 0; i < lanes; ++i) x[i] = std::expm1(x[i]);
   return x;
 }
+#endif
 
 /// A 3 x 3 matrix of scalars T, row by row.
 template <class T>
@@ -64,6 +71,14 @@ struct Tensor {
   T& operator()(int i, int j) { return c[3 * i + j]; }
   const T& operator()(int i, int j) const { return c[3 * i + j]; }
 };
+
+/// F = I + H. Entry by entry, since a copy of so many numbers is a call.
+template <class T>
+Tensor<T> deformation_gradient(const Tensor<T>& H) {
+  Tensor<T> F;
+  for (int k = 0; k < 9; ++k) F.c[k] = k % 4 == 0 ? H.c[k] + 1.0 : H.c[k];
+  return F;
+}
 
 /// Cofactor matrix: cof(A) = det(A) A^-T.
 template <class T>

@@ -47,8 +47,7 @@ std::shared_ptr<const Law> make_volume_constraint(VolumeMeasure measure) {
 }
 
 void measure_hyperelastic(const Gradients& H, const Response& response, Measures& out) {
-  Tensor<Lanes> F = H;
-  for (int i = 0; i < 3; ++i) F(i, i) += 1.0;
+  const Tensor<Lanes> F = deformation_gradient(H);
   Lanes J = determinant(F);
   for (int i = 0; i < lanes; ++i)
     if (std::abs(J[i]) < 1e-12) J[i] = 1e-12;  // flat: the stress is past all measure, yet finite
