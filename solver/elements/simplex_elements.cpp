@@ -28,7 +28,10 @@ SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
       thickness_(dimension < 3 ? model.thickness : 1),
       stored_energies_(model.stored_energies) {
   const Rule<dimension> places = rule();
-  for (std::size_t q = 0; q < count; ++q) reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
+  for (std::size_t q = 0; q < count; ++q) {
+    reference_gradients_[q] = Simplex<dimension, nodes>::gradients(places[q].xi);
+    barycentric_[q] = Simplex<dimension, nodes>::barycentric(places[q].xi);
+  }
   make_batches(model);
   std::vector<std::vector<int>> batch_nodes;
   for (const Batch& batch : batches_) {
@@ -115,9 +118,9 @@ void SimplexElements<dimension, nodes, count>::shape_gradients(const Batch& batc
 
 template <int dimension, int nodes, int count>
 Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q,
-                                                             const NodeValues<dimension, nodes>& u) const {
+                                                             const Slopes<dimension, nodes>& moved) const {
   const auto point = static_cast<std::size_t>(q);
-  Gradients H = displacement_gradient<dimension, nodes>(u, batch.inverse(q), reference_gradients_[point]);
+  Gradients H = displacement_gradient<dimension, nodes>(moved, batch.inverse(q), barycentric_[point]);
   if (dimension == 2) batch.laws.complete(point, H);
   return H;
 }
@@ -125,24 +128,24 @@ Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch,
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch, const Vector& u, Want want,
                                                               Vector& force, BlockMatrix* matrix) const {
-  const auto moved = gather_nodes<dimension, nodes>(batch, u);
+  const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
   Gradients H[count];
   Response response[count];
   for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
   batch.laws.evaluate(want, {H, count}, {response, count});
   if (!batch.history.empty()) batch.history.apply(want, {H, count}, {response, count});
 
-  SimplexResult<dimension, nodes> result;
-  std::fill_n(&result.force[0][0], nodes * dimension, Lanes{});
+  PointWork<dimension> work[count];
   Notes notes;
   for (int q = 0; q < count; ++q) {
     const Lanes w = batch.points[q].weight;
-    add_force<dimension, nodes>(response[q].P, w, batch.inverse(q), reference_gradients_[static_cast<std::size_t>(q)],
-                                result);
+    work[q] = work_at<dimension>(response[q].P, w, batch.inverse(q));
     notes.add(w * response[q].energy, volume_ratio(H[q]));
   }
   Assembled found;
   notes.tell(batch.count, numbering_.elements.data() + batch.first, found);
+  SimplexResult<dimension, nodes> result;
+  set_forces(work, barycentric_, result);
   scatter_force(batch, result, force);
   if (!matrix) return found;
 
@@ -183,13 +186,13 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
   const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
     const Batch& batch = batches_[b];
     if (b + 1 < batches_.size()) fetch(batches_[b + 1], false);
-    const Gradients H = gradient(batch, 0, gather_nodes<dimension, nodes>(batch, u));
+    const Gradients H = gradient(batch, 0, slopes(gather_nodes<dimension, nodes>(batch, u)));
     RotatedResponse response;
     batch.laws.laws.front()->evaluate_rotated(want, {&H, 1}, {&response, 1});
     const Lanes w = batch.points[0].weight;
+    const PointWork<dimension> work[] = {work_at<dimension>(response.P, w, batch.inverse(0))};
     SimplexResult<dimension, nodes> result;
-    std::fill_n(&result.force[0][0], nodes * dimension, Lanes{});
-    add_force<dimension, nodes>(response.P, w, batch.inverse(0), reference_gradients_[0], result);
+    set_forces(work, std::array<Barycentric<dimension>, 1>{barycentric_[0]}, result);
     scatter_force(batch, result, force);
     ShapeGradients g;
     shape_gradients(batch, 0, g);
@@ -243,7 +246,7 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
   const Rule<dimension> places = rule();
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     const Batch& batch = batches_[b];
-    const auto moved = gather_nodes<dimension, nodes>(batch, u);
+    const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
     ElementPoints found[lanes] = {};
     for (int q = 0; q < count; ++q) {
       const Gradients H = gradient(batch, q, moved);
@@ -286,7 +289,7 @@ void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::end_step(Batch& batch, const Vector& u) const {
-  const auto moved = gather_nodes<dimension, nodes>(batch, u);
+  const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
   Gradients H[count];
   Response response[count];
   for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);

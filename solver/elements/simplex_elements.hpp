@@ -62,7 +62,7 @@ class SimplexElements final : public Elements {
   void end_step(Batch& batch, const Vector& u) const;
   void make_batches(const Model& model);
   void fill(Batch& batch, const Model& model) const;
-  Gradients gradient(const Batch& batch, int q, const NodeValues<dimension, nodes>& u) const;
+  Gradients gradient(const Batch& batch, int q, const Slopes<dimension, nodes>& moved) const;
   Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
   bool all_rotated(Want want) const;
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
@@ -78,6 +78,7 @@ class SimplexElements final : public Elements {
   mutable int matrices_ = 0;                    ///< asked for so far
   mutable std::optional<RotatedRows<4>> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
+  std::array<Barycentric<dimension>, count> barycentric_;  ///< of the quadrature points
 };
 
 }  // namespace msml::fe

@@ -39,20 +39,66 @@ NodeValues<dimension, nodes> gather_nodes(const Batch& batch, const Vector& u) {
   return values;
 }
 
-/// H = sum_a u_a r_a^T dxi/dX, r_a = dN_a/dxi; `inverse` is dxi/dX row by row.
+/// du_i/dxi_d at the corners of a quadratic simplex, in which it is linear; one value where it is constant.
 template <int dimension, int nodes>
-Gradients displacement_gradient(const NodeValues<dimension, nodes>& values, const Lanes* inverse,
-                                const ReferenceGradients<dimension, nodes>& r) {
+struct Slopes {
+  static constexpr int places = nodes == dimension + 1 ? 1 : dimension + 1;
+  Lanes at[places][dimension][dimension];
+};
+
+/// L_c of the corners at one point.
+template <int dimension>
+using Barycentric = std::array<double, dimension + 1>;
+
+/// Mid node of each pair of corners of a quadratic simplex.
+template <int dimension, int nodes>
+constexpr auto mid_nodes = [] {
+  std::array<std::array<int, dimension + 1>, dimension + 1> mid{};
+  for (int k = dimension + 1; k < nodes; ++k) {
+    const auto [i, j] = Simplex<dimension, nodes>::edges[static_cast<std::size_t>(k - dimension - 1)];
+    mid[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = k;
+    mid[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)] = k;
+  }
+  return mid;
+}();
+
+/// du/dxi. Of quadratic simplices it is linear, and at corner c the slope towards corner j is 4 u_cj - 3 u_c - u_j with
+/// the node cj between them: fewer operations than the gradients of all shape functions at each point.
+template <int dimension, int nodes>
+Slopes<dimension, nodes> slopes(const NodeValues<dimension, nodes>& values) {
+  Slopes<dimension, nodes> D;
+  for (int i = 0; i < dimension; ++i) {
+    if constexpr (nodes == dimension + 1) {
+      for (int d = 0; d < dimension; ++d) D.at[0][i][d] = values.u[d + 1][i] - values.u[0][i];
+    } else {
+      for (std::size_t c = 0; c <= dimension; ++c) {
+        const Lanes own = 3.0 * values.u[c][i];
+        const auto towards = [&](std::size_t j) {
+          return 4.0 * values.u[mid_nodes<dimension, nodes>[c][j]][i] - values.u[j][i] - own;
+        };
+        // Axis d leads from corner 0 to corner d + 1, and so from corner c to d + 1 and back from c to 0.
+        const Lanes back = c == 0 ? Lanes{} : towards(0);
+        for (std::size_t d = 0; d < dimension; ++d)
+          D.at[c][i][d] = c == 0 ? towards(d + 1) : d + 1 == c ? -back : towards(d + 1) - back;
+      }
+    }
+  }
+  return D;
+}
+
+/// H = du/dxi dxi/dX; `inverse` is dxi/dX row by row.
+template <int dimension, int nodes>
+Gradients displacement_gradient(const Slopes<dimension, nodes>& D, const Lanes* inverse,
+                                const Barycentric<dimension>& L) {
   Gradients H;
   if constexpr (dimension < 3) H = {};
   for (int i = 0; i < dimension; ++i) {
     Lanes by_xi[dimension];  // row i of du/dxi
-    for (std::size_t d = 0; d < dimension; ++d) {
-      if constexpr (nodes == dimension + 1) {
-        by_xi[d] = values.u[d + 1][i] - values.u[0][i];
-      } else {
-        by_xi[d] = values.u[0][i] * r[0][d];
-        for (std::size_t a = 1; a < nodes; ++a) by_xi[d] += values.u[a][i] * r[a][d];
+    for (int d = 0; d < dimension; ++d) {
+      by_xi[d] = D.at[0][i][d];
+      if constexpr (nodes > dimension + 1) {
+        by_xi[d] *= L[0];
+        for (std::size_t c = 1; c <= dimension; ++c) by_xi[d] += L[c] * D.at[c][i][d];
       }
     }
     for (int k = 0; k < dimension; ++k) {
@@ -63,19 +109,55 @@ Gradients displacement_gradient(const NodeValues<dimension, nodes>& values, cons
   return H;
 }
 
-/// force_a += w P (dxi/dX)^T r_a.
-template <int dimension, int nodes>
-void add_force(const Tensor<Lanes>& P, Lanes w, const Lanes* inverse, const ReferenceGradients<dimension, nodes>& r,
-               SimplexResult<dimension, nodes>& result) {
+/// w P (dxi/dX)^T at one point: what does work on du/dxi there.
+template <int dimension>
+struct PointWork {
+  Lanes at[dimension][dimension];
+};
+template <int dimension>
+PointWork<dimension> work_at(const Tensor<Lanes>& P, Lanes w, const Lanes* inverse) {
+  PointWork<dimension> work;
+  for (int i = 0; i < dimension; ++i)
+    for (int d = 0; d < dimension; ++d) work.at[i][d] = w * inner<dimension>(P.c + 3 * i, inverse + dimension * d);
+  return work;
+}
+
+/// The forces at the nodes that do the work of all points, L being theirs: the transpose of slopes() and of what
+/// displacement_gradient makes of them.
+template <int dimension, int nodes, std::size_t count>
+void set_forces(const PointWork<dimension> (&points)[count], const std::array<Barycentric<dimension>, count>& L,
+                SimplexResult<dimension, nodes>& result) {
+  auto& force = result.force;
   for (int i = 0; i < dimension; ++i) {
-    Lanes by_xi[dimension];
-    for (int d = 0; d < dimension; ++d) by_xi[d] = w * inner<dimension>(P.c + 3 * i, inverse + dimension * d);
-    for (std::size_t d = 0; d < dimension; ++d) {
-      if constexpr (nodes == dimension + 1) {
-        result.force[d + 1][i] += by_xi[d];
-        result.force[0][i] -= by_xi[d];
-      } else {
-        for (std::size_t a = 0; a < nodes; ++a) result.force[a][i] += by_xi[d] * r[a][d];
+    if constexpr (nodes == dimension + 1) {
+      Lanes sum{};
+      for (int d = 0; d < dimension; ++d) {
+        Lanes along = points[0].at[i][d];
+        for (std::size_t q = 1; q < count; ++q) along += points[q].at[i][d];
+        force[d + 1][i] = along;
+        sum += along;
+      }
+      force[0][i] = -sum;
+    } else {
+      Lanes along[dimension + 1][dimension + 1];  // [c][j]: on the slope at corner c towards corner j
+      for (std::size_t c = 0; c <= dimension; ++c) {
+        Lanes back{};
+        for (std::size_t d = 0; d < dimension; ++d) {
+          Lanes sum = L[0][c] * points[0].at[i][d];
+          for (std::size_t q = 1; q < count; ++q) sum += L[q][c] * points[q].at[i][d];
+          along[c][d + 1] = sum;
+          back -= sum;
+        }
+        along[c][0] = back;
+      }
+      for (std::size_t c = 0; c <= dimension; ++c) {
+        Lanes own{};
+        for (std::size_t j = 0; j <= dimension; ++j) {
+          if (j == c) continue;
+          own -= 3.0 * along[c][j] + along[j][c];
+          if (j > c) force[mid_nodes<dimension, nodes>[c][j]][i] = 4.0 * (along[c][j] + along[j][c]);
+        }
+        force[c][i] = own;
       }
     }
   }

@@ -99,26 +99,28 @@ Lanes apply_stiffness(const RestStiffness& stiffness, const Displacements& d, Fo
 /// The same for straight elements of one law: the stresses at the quadrature points cost less than their stiffness.
 Lanes apply_hooke(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&q)[10][3]) {
   static const auto points = stiffness_rule<3, 10>();
-  static const auto reference = [] {
-    std::array<ReferenceGradients<3, 10>, 4> r;
-    for (std::size_t p = 0; p < 4; ++p) r[p] = Tetrahedron<10>::gradients(points[p].xi);
-    return r;
+  static const auto barycentric = [] {
+    std::array<Barycentric<3>, 4> L;
+    for (std::size_t p = 0; p < 4; ++p) L[p] = Tetrahedron<10>::barycentric(points[p].xi);
+    return L;
   }();
   const Lanes* inverse = batch.g[1];  // dL_1/dX, dL_2/dX, dL_3/dX
   NodeValues<3, 10> values;
-  SimplexResult<3, 10> result;
   std::memcpy(values.u, d, sizeof d);
-  std::fill_n(&result.force[0][0], 30, Lanes{});
+  const Slopes<3, 10> moved = slopes(values);
+  PointWork<3> work[4];
   Lanes energy{};
   for (std::size_t p = 0; p < 4; ++p) {
-    const Tensor<Lanes> e = sym(displacement_gradient<3, 10>(values, inverse, reference[p]));
+    const Tensor<Lanes> e = sym(displacement_gradient<3, 10>(moved, inverse, barycentric[p]));
     Tensor<Lanes> stress;  // over mu
     for (int k = 0; k < 9; ++k) stress.c[k] = 2.0 * e.c[k];
     for (int i = 0; i < 3; ++i) stress(i, i) += batch.ratio * trace(e);
     const Lanes weight = 6 * points[p].weight * batch.shear;
-    add_force<3, 10>(stress, weight, inverse, reference[p], result);
+    work[p] = work_at<3>(stress, weight, inverse);
     energy += 0.5 * weight * contract(stress, e);
   }
+  SimplexResult<3, 10> result;
+  set_forces(work, barycentric, result);
   std::memcpy(q, result.force, sizeof q);
   return energy;
 }
