@@ -15,12 +15,10 @@ double largest(Lanes a) {
   return a[0];
 }
 
-/// The rotations of points that are easy; anything for the others, which get no say in when to end.
-///
-/// The trace t of U is the largest root of t^4 - 2 |F|^2 t^2 - 8 det F t + |F|^4 - 4 |cof F|^2, a simple one: there the
-/// slope is 8 d, d = (s1 + s2) (s2 + s3) (s3 + s1) of the stretches. Newton's method comes down to it from
-/// sqrt(3) |F|, which is nearly t where stretches are nearly equal. By the characteristic equation of U then
-/// d R = (t^2 + |F|^2)/2 F + t cof F - F F^T F, and |R|^2 = 3.
+/// The rotations of well-conditioned points with det F > 0. The trace t of U is the largest root of t^4 - 2 |F|^2 t^2 -
+/// 8 det F t + |F|^4 - 4 |cof F|^2, a simple one: there the slope is 8 d, d = (s1 + s2) (s2 + s3) (s3 + s1) of the
+/// stretches. Newton's method comes down to it from sqrt(3) |F|, which is nearly t where stretches are nearly equal. By
+/// the characteristic equation of U then d R = (t^2 + |F|^2)/2 F + t cof F - F F^T F, and |R|^2 = 3.
 Tensor<Lanes> rotations(const Tensor<Lanes>& F, const Tensor<Lanes>& cof, Lanes det) {
   Lanes C[3][3];
   for (int i = 0; i < 3; ++i)
@@ -66,8 +64,7 @@ Tensor<Lanes> polar_rotation(const Tensor<Lanes>& F) {
   for (int i = 0; i < lanes; ++i)
     if (!easy[i])
       for (int k = 0; k < 9; ++k) safe.c[k][i] = k % 4 == 0 ? 1 : 0;
-  const Tensor<Lanes> safe_cof = cofactor(safe);
-  Tensor<Lanes> R = rotations(safe, safe_cof, determinant(safe, safe_cof));
+  Tensor<Lanes> R = polar_rotation(safe);
   for (int i = 0; i < lanes; ++i) {
     if (easy[i]) continue;
     Mat3 f;
