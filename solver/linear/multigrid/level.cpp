@@ -59,10 +59,10 @@ void Level<B>::estimate_radius() {
   // Lanczos' method with the inner product of the diagonal blocks, as conjugate gradients see it (Saad 2003, 6.7.3).
   using V = Column<B>;
   constexpr int steps = 12;
-  Numbers r = vector(), z = vector(), p = vector(), q = vector();
+  Singles r = vector(), z = vector(), p = vector(), q = vector();
   std::mt19937 random(1);
   for (int k = 0; k < B * nodes(); ++k) r[at(k)] = static_cast<float>(random() % 2001) / 1000.0f - 1.0f;
-  const auto dot = [&](const Numbers& a, const Numbers& b) {
+  const auto dot = [&](const Singles& a, const Singles& b) {
     double sum = 0;
     for (int k = 0; k < B * nodes(); ++k) sum += static_cast<double>(a[at(k)]) * b[at(k)];
     return sum;
@@ -97,7 +97,7 @@ void Level<B>::estimate_radius() {
 }
 
 template <int B>
-void Level<B>::step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next) {
+void Level<B>::step(const Singles& b, const Singles& x, float keep, float add, Singles& next) {
   using V = Column<B>;
   for_rows(nodes(), matrix_.piece(), [&](int n) {
     const V r = get<V>(&b[at(B * n)]) - row_product(n, x.data());
@@ -109,7 +109,7 @@ void Level<B>::step(const Numbers& b, const Numbers& x, float keep, float add, N
 
 // The three-term recurrence on [lowest, highest] radius: Saad 2003, algorithm 12.1.
 template <int B>
-void Level<B>::smooth_from_zero(const Numbers& b, Numbers& x) {
+void Level<B>::smooth_from_zero(const Singles& b, Singles& x) {
   using V = Column<B>;
   const double a = lowest * radius_, c = highest * radius_, theta = (c + a) / 2, delta = (c - a) / 2;
   const float first = static_cast<float>(1 / theta);
@@ -128,7 +128,7 @@ void Level<B>::smooth_from_zero(const Numbers& b, Numbers& x) {
 }
 
 template <int B>
-void Level<B>::smooth(const Numbers& b, Numbers& x) {
+void Level<B>::smooth(const Singles& b, Singles& x) {
   const double a = lowest * radius_, c = highest * radius_, theta = (c + a) / 2, delta = (c - a) / 2;
   double rho = delta / theta;
   for (int k = 0; k < degree; ++k) {
@@ -143,7 +143,7 @@ void Level<B>::smooth(const Numbers& b, Numbers& x) {
 }
 
 template <int B>
-void Level<B>::residual(const Numbers& b, const Numbers& x, Numbers& r) const {
+void Level<B>::residual(const Singles& b, const Singles& x, Singles& r) const {
   using V = Column<B>;
   for_rows(nodes(), matrix_.piece(),
            [&](int n) { put<B>(&r[at(B * n)], V(get<V>(&b[at(B * n)]) - row_product(n, x.data()))); });

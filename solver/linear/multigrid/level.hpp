@@ -11,7 +11,7 @@ namespace msml::fe {
 template <int B>
 class Level {
  public:
-  using Numbers = std::vector<float>;
+  using Singles = std::vector<float>;
 
   /// Takes the matrix, Blocks or a view; false if a diagonal block is not positive definite.
   template <class Matrix>
@@ -50,13 +50,13 @@ class Level {
     matrix_.forget_values();
   }
   int nodes() const { return matrix_.sparsity.rows(); }
-  Numbers vector() const { return Numbers(B * static_cast<std::size_t>(nodes()) + 8, 0.0f); }
+  Singles vector() const { return Singles(B * static_cast<std::size_t>(nodes()) + 8, 0.0f); }
   /// x = S b: `degree` steps from zero.
-  void smooth_from_zero(const Numbers& b, Numbers& x);
+  void smooth_from_zero(const Singles& b, Singles& x);
   /// x += S (b - A x).
-  void smooth(const Numbers& b, Numbers& x);
+  void smooth(const Singles& b, Singles& x);
   /// r = b - A x.
-  void residual(const Numbers& b, const Numbers& x, Numbers& r) const;
+  void residual(const Singles& b, const Singles& x, Singles& r) const;
   const Blocks<float, B, B>& matrix() const { return matrix_; }
   double radius() const { return radius_; }                        ///< largest eigenvalue of inverse(diagonal) A
   const std::vector<double>& inverse() const { return inverse_; }  ///< B x B for each node, column by column
@@ -75,14 +75,14 @@ class Level {
   bool invert(const std::vector<double>& diagonals);
   Column<B> row_product(int n, const float* x) const;
   void estimate_radius();
-  void step(const Numbers& b, const Numbers& x, float keep, float add, Numbers& next);
+  void step(const Singles& b, const Singles& x, float keep, float add, Singles& next);
 
   Blocks<float, B, B> matrix_;
   Halves halves_;  ///< instead of the numbers of matrix_, unless empty
   std::vector<double> inverse_;
   std::vector<float> inverse_single_;
   double radius_ = 1;
-  Numbers direction_, other_;
+  Singles direction_, other_;
 };
 
 }  // namespace msml::fe
