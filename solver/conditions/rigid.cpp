@@ -41,13 +41,11 @@ std::vector<int> connected_parts(const Model& model) {
     }
   for (const PointMass& mass : model.point_masses)
     if (parent[static_cast<std::size_t>(mass.node)] < 0) parent[static_cast<std::size_t>(mass.node)] = mass.node;
-  for (std::size_t n = 0; n < parent.size(); ++n)
-    if (parent[n] >= 0) parent[n] = root_of(static_cast<int>(n));
   std::vector<int> part_of(parent.size(), -1);
   for (int n = 0, parts = 0; n < static_cast<int>(parent.size()); ++n) {
-    const int first = parent[static_cast<std::size_t>(n)];
-    if (first >= 0)
-      part_of[static_cast<std::size_t>(n)] = first == n ? parts++ : part_of[static_cast<std::size_t>(first)];
+    if (parent[static_cast<std::size_t>(n)] < 0) continue;
+    const int first = root_of(n);  // the smallest point of its part
+    part_of[static_cast<std::size_t>(n)] = first == n ? parts++ : part_of[static_cast<std::size_t>(first)];
   }
   return part_of;
 }
