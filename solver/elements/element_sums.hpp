@@ -146,18 +146,30 @@ inline void note(const Lanes& energy, const Lanes& J, int count, const int* elem
   }
 }
 
-/// The same for several points of eight elements: collected lane by lane, told once.
+/// The same for many batches: collected lane by lane, told once.
 struct Notes {
   Lanes energy{}, J = lanes_of(std::numeric_limits<double>::infinity());
   Lanes sound{};  ///< zero as long as all numbers are finite
-  void add(const Lanes& weighted_energy, const Lanes& ratio) {
+  using Places = long long __attribute__((vector_size(sizeof(Lanes))));
+  Places first{};  ///< place in Numbering::elements of the batch that the smallest J of a lane is from
+  /// Of the batch whose lane 0 is the element at `place`. Unused lanes repeat a used one before them, with weight 0.
+  void add(const Lanes& weighted_energy, const Lanes& ratio, int place) {
     energy += weighted_energy;
+    first = ratio < J ? Places{} + place : first;
     J = ratio < J ? ratio : J;
     sound += 0.0 * (weighted_energy + ratio);
   }
-  void tell(int count, const int* elements, Assembled& found) const {
-    note(energy, J, count, elements, found);
-    for (int lane = 0; lane < count; ++lane) found.finite = found.finite && sound[lane] == 0;
+  /// `elements` are the cell ids of all.
+  Assembled tell(const std::vector<int>& elements) const {
+    Assembled found;
+    for (int lane = 0; lane < lanes; ++lane) {
+      found.energy += energy[lane];
+      found.finite = found.finite && sound[lane] == 0;
+      if (!(J[lane] < found.smallest_J)) continue;
+      found.smallest_J = J[lane];
+      found.smallest_J_element = elements[static_cast<std::size_t>(first[lane] + lane)];
+    }
+    return found;
   }
 };
 
@@ -171,19 +183,27 @@ inline void merge(Assembled& sum, const Assembled& part) {
   }
 }
 
-/// Calls add(batch) for every batch, chunks of one colour in parallel, and puts together what they found, in an order
+/// Calls add(chunk) for every chunk, those of one colour in parallel, and puts together what they found, in an order
 /// that does not depend on the number of threads.
 template <class Add>
-Assembled add_by_colour(const std::vector<std::vector<Chunk>>& colours, const Add& add) {
+Assembled add_chunks(const std::vector<std::vector<Chunk>>& colours, const Add& add) {
   Assembled sum;
   for (const auto& chunks : colours) {
     std::vector<Assembled> parts(chunks.size());
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-      for (int b = chunks[c].first; b < chunks[c].last; ++b) merge(parts[c], add(static_cast<std::size_t>(b)));
-    });
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) { parts[c] = add(chunks[c]); });
     for (const Assembled& part : parts) merge(sum, part);
   }
   return sum;
+}
+
+/// The same with add(batch) for every batch.
+template <class Add>
+Assembled add_by_colour(const std::vector<std::vector<Chunk>>& colours, const Add& add) {
+  return add_chunks(colours, [&](const Chunk& chunk) {
+    Assembled part;
+    for (int b = chunk.first; b < chunk.last; ++b) merge(part, add(static_cast<std::size_t>(b)));
+    return part;
+  });
 }
 
 }  // namespace msml::fe

@@ -19,7 +19,8 @@ struct BatchLaws {
     for (std::size_t q = 0; q < laws.size(); ++q)
       laws[q]->evaluate(want, gradients.subspan(q, 1), responses.subspan(q, 1));
   }
-  std::size_t bytes() const { return laws.size() * sizeof(laws[0]); }  ///< of the list, not of the laws
+  const Law* only() const { return laws.size() == 1 ? laws.front().get() : nullptr; }  ///< null where there are several
+  std::size_t bytes() const { return laws.size() * sizeof(laws[0]); }                  ///< of the list, not of the laws
   /// As Law::complete.
   void complete(std::size_t point, Gradients& gradient) const {
     laws[laws.size() == 1 ? 0 : point]->complete({&gradient, 1});

@@ -58,7 +58,7 @@ std::vector<int> positions_of_blocks(const Batches& batches) {
   positions.reserve(elements * nodes * nodes);
   for (const auto& batch : batches)
     for (int lane = 0; lane < batch.count; ++lane)
-      positions.insert(positions.end(), batch.position[lane], batch.position[lane] + nodes * nodes);
+      positions.insert(positions.end(), std::begin(batch.position[lane]), std::end(batch.position[lane]));
   return positions;
 }
 

@@ -65,11 +65,14 @@ void SimplexElements<dimension, nodes, count>::make_batches(const Model& model) 
     first += batch.count;
     batches_.push_back(batch);
   }
-  tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) { fill(batches_[b], model); });
+  block_positions_.resize(batches_.size() * lanes);
+  tbb::parallel_for(std::size_t(0), batches_.size(),
+                    [&](std::size_t b) { fill(batches_[b], &block_positions_[b * lanes], model); });
 }
 
 template <int dimension, int nodes, int count>
-void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& model) const {
+void SimplexElements<dimension, nodes, count>::fill(Batch& batch, typename Batch::Positions* position,
+                                                    const Model& model) const {
   const Rule<dimension> places = rule();
   std::vector<std::vector<Vec3>> points(count);
   for (int lane = 0; lane < lanes; ++lane) {
@@ -81,7 +84,7 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
     }
     for (int a = 0; a < nodes; ++a)
       for (int b = 0; b < nodes; ++b)
-        batch.position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
+        position[lane][a * nodes + b] = pattern_->find(batch.node[lane][a], batch.node[lane][b]);
     const bool same = straight<dimension, nodes>(positions(), ids);
     batch.straight = batch.straight && same;
     Jacobian<dimension> J, inverse;
@@ -100,6 +103,8 @@ void SimplexElements<dimension, nodes, count>::fill(Batch& batch, const Model& m
   const auto first = numbering_.elements.begin() + batch.first;
   const std::vector<int> elements(first, first + batch.count);
   batch.laws = laws_of(model, region, elements, points);
+  batch.law = batch.laws.only();
+  batch.position = position;
   if (!region.prony.g.empty())
     batch.history = PronyHistory(series_of(region, elements, points), count, batch.laws.laws.front()->small_strain());
 }
@@ -117,59 +122,84 @@ void SimplexElements<dimension, nodes, count>::shape_gradients(const Batch& batc
 }
 
 template <int dimension, int nodes, int count>
-Gradients SimplexElements<dimension, nodes, count>::gradient(const Batch& batch, int q,
-                                                             const Slopes<dimension, nodes>& moved) const {
-  const auto point = static_cast<std::size_t>(q);
-  Gradients H = displacement_gradient<dimension, nodes>(moved, batch.inverse(q), barycentric_[point]);
-  if (dimension == 2) batch.laws.complete(point, H);
-  return H;
+void SimplexElements<dimension, nodes, count>::set_gradients(const Batch& batch, const Vector& u, Gradients* H) const {
+  const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
+  for (std::size_t q = 0; q < count; ++q) {
+    displacement_gradient<dimension, nodes>(moved, batch.inverse(static_cast<int>(q)), barycentric_[q], H[q]);
+    if (dimension == 2) batch.laws.complete(q, H[q]);
+  }
+}
+
+/// Asks for what add_strips reads of a batch: the processor does not guess the gaps between batches.
+template <class Batch>
+void fetch(const Batch& batch, bool positions) {
+  const auto lines = [](const void* from, std::size_t bytes) {
+    for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(from) + k);
+  };
+  lines(&batch, sizeof batch.node + 32);
+  if (positions) lines(batch.position, lanes * sizeof *batch.position);
+  lines(batch.points, batch.straight ? sizeof batch.points[0] : sizeof batch.points);
+}
+
+/// Calls evaluate(laws, gradients, responses) for runs of batches with one law, or for a batch with several. `count`
+/// points a batch.
+template <int count, class Batch, class Response, class Evaluate>
+void by_law(const Batch* batches, int size, const Gradients* H, Response* responses, const Evaluate& evaluate) {
+  for (int b = 0, next = 1; b < size; b = next++) {
+    while (next < size && batches[b].law != nullptr && batches[next].law == batches[b].law) ++next;
+    const auto points = static_cast<std::size_t>((next - b) * count);
+    evaluate(batches[b].laws, std::span(H + b * count, points), std::span(responses + b * count, points));
+  }
 }
 
 template <int dimension, int nodes, int count>
-Assembled SimplexElements<dimension, nodes, count>::add_batch(const Batch& batch, const Vector& u, Want want,
-                                                              Vector& force, BlockMatrix* matrix) const {
-  const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
-  Gradients H[count];
-  Response response[count];
-  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
-  batch.laws.evaluate(want, {H, count}, {response, count});
-  if (!batch.history.empty()) batch.history.apply(want, {H, count}, {response, count});
+template <class Response, class Evaluate, class Add>
+Assembled SimplexElements<dimension, nodes, count>::add_strips(const Vector& u, bool positions,
+                                                               const Evaluate& evaluate, const Add& add) const {
+  return add_chunks(colours_, [&](const Chunk& chunk) {
+    Notes notes;
+    Gradients H[strip_points];
+    Response response[strip_points];
+    for (int first = chunk.first; first < chunk.last; first += strip_batches) {
+      const Batch* batch = &batches_[static_cast<std::size_t>(first)];
+      const int size = std::min(strip_batches, chunk.last - first);
+      for (int b = 0; b < size; ++b) set_gradients(batch[b], u, H + b * count);
+      by_law<count>(batch, size, H, response, evaluate);
+      for (int b = 0; b < size; ++b) {
+        if (first + b + strip_batches < chunk.last) fetch(batch[b + strip_batches], positions);
+        add(batch[b], H + b * count, response + b * count, notes);
+      }
+    }
+    return notes.tell(numbering_.elements);
+  });
+}
 
+template <int dimension, int nodes, int count>
+template <class Response>
+void SimplexElements<dimension, nodes, count>::add_force(const Batch& batch, const Gradients* H,
+                                                         const Response* response, Vector& force, Notes& notes) const {
   PointWork<dimension> work[count];
-  Notes notes;
   for (int q = 0; q < count; ++q) {
     const Lanes w = batch.points[q].weight;
     work[q] = work_at<dimension>(response[q].P, w, batch.inverse(q));
-    notes.add(w * response[q].energy, volume_ratio(H[q]));
+    notes.add(w * response[q].energy, volume_ratio(H[q]), batch.first);
   }
-  Assembled found;
-  notes.tell(batch.count, numbering_.elements.data() + batch.first, found);
   SimplexResult<dimension, nodes> result;
   set_forces(work, barycentric_, result);
   scatter_force(batch, result, force);
-  if (!matrix) return found;
+}
 
+template <int dimension, int nodes, int count>
+void SimplexElements<dimension, nodes, count>::add_tangent(const Batch& batch, const Response* response,
+                                                           BlockMatrix& matrix) const {
+  SimplexResult<dimension, nodes> result;
   std::fill_n(&result.block[0][0], nodes * (nodes + 1) / 2 * dimension * dimension, Lanes{});
   for (int q = 0; q < count; ++q) {
     ShapeGradients g;
     shape_gradients(batch, q, g);
     add_stiffness<dimension, nodes>(response[q].tangent, batch.points[q].weight, g, result);
   }
-  scatter_stiffness(batch, result, *matrix);
-  return found;
-}
-
-/// Asks for what add_batch reads of a batch: the processor does not guess the gaps between batches.
-template <class Batch>
-void fetch(const Batch& batch, bool positions) {
-  const auto lines = [](const void* from, std::size_t bytes) {
-    for (std::size_t k = 0; k < bytes; k += 64) __builtin_prefetch(static_cast<const char*>(from) + k);
-  };
-  lines(&batch.region, 64);
-  lines(batch.node, sizeof batch.node);
-  if (positions) lines(batch.position, sizeof batch.position);
-  lines(batch.points, batch.straight ? sizeof batch.points[0] : sizeof batch.points);
-  lines(&batch.laws, sizeof batch.laws + sizeof batch.history);
+  scatter_stiffness(batch, result, matrix);
 }
 
 template <int dimension, int nodes, int count>
@@ -183,27 +213,17 @@ template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
                                                                 BlockMatrix& matrix) const {
   if (!rows_) rows_.emplace(pattern_, positions_of_blocks<nodes>(batches_));
-  const Assembled found = add_by_colour(colours_, [&](std::size_t b) {
-    const Batch& batch = batches_[b];
-    if (b + 1 < batches_.size()) fetch(batches_[b + 1], false);
-    const Gradients H = gradient(batch, 0, slopes(gather_nodes<dimension, nodes>(batch, u)));
-    RotatedResponse response;
-    batch.laws.laws.front()->evaluate_rotated(want, {&H, 1}, {&response, 1});
-    const Lanes w = batch.points[0].weight;
-    const PointWork<dimension> work[] = {work_at<dimension>(response.P, w, batch.inverse(0))};
-    SimplexResult<dimension, nodes> result;
-    set_forces(work, std::array<Barycentric<dimension>, 1>{barycentric_[0]}, result);
-    scatter_force(batch, result, force);
+  const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
+    laws.laws.front()->evaluate_rotated(want, gradients, responses);
+  };
+  const auto add = [&](const Batch& batch, const Gradients* H, const RotatedResponse* at, Notes& notes) {
+    add_force(batch, H, at, force, notes);
     ShapeGradients g;
     shape_gradients(batch, 0, g);
     if constexpr (dimension == 3 && nodes == 4)
-      rows_->set(batch.first, batch.count, response.R, w * response.mu, response.lambda / response.mu, g.g);
-    Notes notes;
-    notes.add(w * response.energy, volume_ratio(H));
-    Assembled part;
-    notes.tell(batch.count, numbering_.elements.data() + batch.first, part);
-    return part;
-  });
+      rows_->set(batch.first, batch.count, at->R, batch.points[0].weight * at->mu, at->lambda / at->mu, g.g);
+  };
+  const Assembled found = add_strips<RotatedResponse>(u, false, evaluate, add);
   rows_->sum(matrix);
   return found;
 }
@@ -215,11 +235,16 @@ Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u
   if (matrix && matrices_ > matrices_before_rows && rotated_[static_cast<std::size_t>(want)])
     return add_rotated(u, want, force, *matrix);
   if (matrix) matrix->set_zero();
-  return add_by_colour(colours_, [&](std::size_t b) {
-    if (matrix) fetch_blocks(batches_[b], *matrix);
-    if (b + 1 < batches_.size()) fetch(batches_[b + 1], matrix != nullptr);
-    return add_batch(batches_[b], u, want, force, matrix);
-  });
+  const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
+    laws.evaluate(want, gradients, responses);
+  };
+  const auto add = [&](const Batch& batch, const Gradients* H, Response* response, Notes& notes) {
+    if (matrix) fetch_blocks(batch, *matrix);
+    if (remembers_ && !batch.history.empty()) batch.history.apply(want, {H, count}, {response, count});
+    add_force(batch, H, response, force, notes);
+    if (matrix) add_tangent(batch, response, *matrix);
+  };
+  return add_strips<Response>(u, matrix != nullptr, evaluate, add);
 }
 
 template <int dimension, int nodes, int count>
@@ -246,10 +271,10 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
   const Rule<dimension> places = rule();
   tbb::parallel_for(std::size_t(0), batches_.size(), [&](std::size_t b) {
     const Batch& batch = batches_[b];
-    const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
+    Gradients H[count];
+    set_gradients(batch, u, H);
     ElementPoints found[lanes] = {};
     for (int q = 0; q < count; ++q) {
-      const Gradients H = gradient(batch, q, moved);
       for (int lane = 0; lane < batch.count; ++lane) {
         ElementPoints& out = found[lane];
         int ids[nodes];
@@ -257,7 +282,7 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
         out.count = q + 1;
         out.place[q] = place<dimension, nodes>(positions(), ids, places[static_cast<std::size_t>(q)].xi);
         out.weight[q] = batch.points[q].weight[lane];
-        for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = H.c[k][lane];
+        for (int k = 0; k < 9; ++k) out.gradient.c[k][q] = H[q].c[k][lane];
       }
     }
     for (int lane = 0; lane < batch.count; ++lane) visit(static_cast<std::size_t>(batch.first + lane), found[lane]);
@@ -266,7 +291,8 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
 
 template <int dimension, int nodes, int count>
 std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
-  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) + (rows_ ? rows_->bytes() : 0);
+  std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) +
+                    block_positions_.size() * sizeof block_positions_[0] + (rows_ ? rows_->bytes() : 0);
   for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
   return sum;
 }
@@ -289,10 +315,9 @@ void SimplexElements<dimension, nodes, count>::end_step(const Vector& u) {
 
 template <int dimension, int nodes, int count>
 void SimplexElements<dimension, nodes, count>::end_step(Batch& batch, const Vector& u) const {
-  const auto moved = slopes(gather_nodes<dimension, nodes>(batch, u));
   Gradients H[count];
   Response response[count];
-  for (int q = 0; q < count; ++q) H[q] = gradient(batch, q, moved);
+  set_gradients(batch, u, H);
   batch.laws.evaluate(stored_energies_ ? Want::tangent : Want::stress, {H, count}, {response, count});
   batch.history.end_step({H, count}, {response, count}, stored_energies_);
   if (!stored_energies_) return;

@@ -19,13 +19,16 @@ struct SimplexBatch {
     Lanes inverse[dimension * dimension];  ///< dxi/dX, row by row
     Lanes weight;                          ///< reference volume of the point
   };
+  using Positions = std::array<int, nodes * nodes>;  ///< of block (a, b) of an element in the pattern, at a * nodes + b
+  // First what forces need, with nothing else in between.
   int region = 0, count = 0;
-  int first = 0;                       ///< place in Numbering::elements of lane 0; the lanes follow
-  int node[lanes][nodes];              ///< numbered nodes
-  int position[lanes][nodes * nodes];  ///< of block (a, b) in the pattern, at a * nodes + b
-  bool straight = true;                ///< dxi/dX is the same at all points
+  int first = 0;             ///< place in Numbering::elements of lane 0; the lanes follow
+  bool straight = true;      ///< dxi/dX is the same at all points
+  int node[lanes][nodes];    ///< numbered nodes
+  const Law* law = nullptr;  ///< of all points; null where there are several
   Point points[rule_points];
   const Lanes* inverse(int q) const { return points[straight ? 0 : q].inverse; }
+  const Positions* position = nullptr;  ///< of each lane
   BatchLaws laws;
   PronyHistory history;      ///< empty where elastic
   double stored_beside = 0;  ///< see Elements::stored_beside
@@ -57,13 +60,20 @@ class SimplexElements final : public Elements {
   void shape_gradients(const Batch& batch, int q, ShapeGradients& g) const;
 
  private:
+  static constexpr int strip_batches = std::max(1, 8 / count), strip_points = strip_batches * count;
   const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   static Rule<dimension> rule();
   void end_step(Batch& batch, const Vector& u) const;
   void make_batches(const Model& model);
-  void fill(Batch& batch, const Model& model) const;
-  Gradients gradient(const Batch& batch, int q, const Slopes<dimension, nodes>& moved) const;
-  Assembled add_batch(const Batch& batch, const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const;
+  void fill(Batch& batch, typename Batch::Positions* position, const Model& model) const;
+  void set_gradients(const Batch& batch, const Vector& u, Gradients* H) const;
+  /// Calls evaluate(laws, gradients, responses) and then add(batch, gradients, responses, notes) for all batches, some
+  /// at a time: eight points in a row keep the processor busy where those of one batch wait for each other.
+  template <class Response, class Evaluate, class Add>
+  Assembled add_strips(const Vector& u, bool positions, const Evaluate& evaluate, const Add& add) const;
+  template <class Response>
+  void add_force(const Batch& batch, const Gradients* H, const Response* response, Vector& force, Notes& notes) const;
+  void add_tangent(const Batch& batch, const Response* response, BlockMatrix& matrix) const;
   bool all_rotated(Want want) const;
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
 
@@ -74,6 +84,7 @@ class SimplexElements final : public Elements {
   bool stored_energies_ = true, remembers_ = false;
   std::array<bool, 4> rotated_{};  ///< by Want: all tangents are those of RotatedResponse, and the elements linear
   std::vector<Batch> batches_;
+  std::vector<typename Batch::Positions> block_positions_;  ///< of the lanes of all batches
   std::vector<std::vector<Chunk>> colours_;
   mutable int matrices_ = 0;                    ///< asked for so far
   mutable std::optional<RotatedRows<4>> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix

@@ -88,9 +88,8 @@ Slopes<dimension, nodes> slopes(const NodeValues<dimension, nodes>& values) {
 
 /// H = du/dxi dxi/dX; `inverse` is dxi/dX row by row.
 template <int dimension, int nodes>
-Gradients displacement_gradient(const Slopes<dimension, nodes>& D, const Lanes* inverse,
-                                const Barycentric<dimension>& L) {
-  Gradients H;
+void displacement_gradient(const Slopes<dimension, nodes>& D, const Lanes* inverse, const Barycentric<dimension>& L,
+                           Gradients& H) {
   if constexpr (dimension < 3) H = {};
   for (int i = 0; i < dimension; ++i) {
     Lanes by_xi[dimension];  // row i of du/dxi
@@ -106,7 +105,6 @@ Gradients displacement_gradient(const Slopes<dimension, nodes>& D, const Lanes* 
       for (int d = 1; d < dimension; ++d) H(i, k) += by_xi[d] * inverse[dimension * d + k];
     }
   }
-  return H;
 }
 
 /// w P (dxi/dX)^T at one point: what does work on du/dxi there.

@@ -42,8 +42,12 @@ class SingleRotationElements final : public Elements {
     const bool by_rows = matrices_ > matrices_before_rows && matrix && by_rows_ && !(want == Want::tangent && exact_);
     if (by_rows && !rows_) rows_.emplace(pattern(), positions_of_blocks<10>(standard_.batches()));
     if (matrix && !by_rows) matrix->set_zero();
-    const Assembled found = add_by_colour(standard_.colours(), [&](std::size_t b) {
-      return add_batch(b, u, want, force, by_rows ? nullptr : matrix, by_rows ? &*rows_ : nullptr);
+    const Assembled found = add_chunks(standard_.colours(), [&](const Chunk& chunk) {
+      Notes notes;
+      for (int b = chunk.first; b < chunk.last; ++b)
+        add_batch(static_cast<std::size_t>(b), u, want, force, by_rows ? nullptr : matrix, by_rows ? &*rows_ : nullptr,
+                  notes);
+      return notes.tell(numbering().elements);
     });
     if (by_rows) rows_->sum(*matrix);
     return found;
@@ -103,8 +107,8 @@ class SingleRotationElements final : public Elements {
   }
 
   /// The tangent goes to a matrix, to rows, or nowhere.
-  Assembled add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix,
-                      RotatedRows<10>* rows) const {
+  void add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix, RotatedRows<10>* rows,
+                 Notes& notes) const {
     const auto& batch = standard_.batches()[b];
     const RotationBatch& own = batches_[b];
     if (matrix) fetch_blocks(batch, *matrix);
@@ -112,21 +116,12 @@ class SingleRotationElements final : public Elements {
     gather_vectors(batch, u.data(), moved);
     SimplexResult<3, 10> result;
     const RotationState state = evaluate_rotation(own, moved, result);
-    Assembled found;
-    for (int lane = 0; lane < batch.count; ++lane) {
-      found.energy += state.energy[lane];
-      if (!std::isfinite(state.energy[lane]) || !std::isfinite(state.J[lane])) found.finite = false;
-      if (state.J[lane] < found.smallest_J) {
-        found.smallest_J = state.J[lane];
-        found.smallest_J_element = numbering().elements[static_cast<std::size_t>(batch.first + lane)];
-      }
-    }
+    notes.add(state.energy, state.J, batch.first);
     scatter_force<3, 10>(batch, result, force);
     if (rows) rows->set(batch.first, batch.count, state.R, factor_of(own) * own.shear, own.ratio, own.g);
-    if (!matrix) return found;
+    if (!matrix) return;
     rotation_tangent(own, state, want == Want::tangent && own.exact, result);
     scatter_stiffness<3, 10>(batch, result, *matrix);
-    return found;
   }
 
   SimplexElements<3, 10> standard_;

@@ -111,7 +111,9 @@ Lanes apply_hooke(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&q
   PointWork<3> work[4];
   Lanes energy{};
   for (std::size_t p = 0; p < 4; ++p) {
-    const Tensor<Lanes> e = sym(displacement_gradient<3, 10>(moved, inverse, barycentric[p]));
+    Gradients H;
+    displacement_gradient<3, 10>(moved, inverse, barycentric[p], H);
+    const Tensor<Lanes> e = sym(H);
     Tensor<Lanes> stress;  // over mu
     for (int k = 0; k < 9; ++k) stress.c[k] = 2.0 * e.c[k];
     for (int i = 0; i < 3; ++i) stress(i, i) += batch.ratio * trace(e);

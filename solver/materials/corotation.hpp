@@ -15,14 +15,6 @@ Tensor<T> sym(const Tensor<T>& a) {
   return s;
 }
 
-/// a : b.
-template <class T>
-T contract(const Tensor<T>& a, const Tensor<T>& b) {
-  T sum = a.c[0] * b.c[0];
-  for (int k = 1; k < 9; ++k) sum += a.c[k] * b.c[k];
-  return sum;
-}
-
 /// a b, or a^T b.
 template <class T>
 Tensor<T> product(const Tensor<T>& a, const Tensor<T>& b, bool transpose_a = false, bool transpose_b = false) {

@@ -14,7 +14,8 @@ struct Invariants {
   Tensor<T> H, K;
   T a, b, j;
 
-  explicit Invariants(const Tensor<T>& gradient) : H(gradient), K(cofactor(gradient)) {
+  explicit Invariants(const Tensor<T>& gradient) : K(cofactor(gradient)) {
+    for (int k = 0; k < 9; ++k) H.c[k] = gradient.c[k];  // entry by entry: see deformation_gradient
     const T tr = trace(H), minors = trace(K), det = determinant(H, K), common = 2.0 * minors;
     for (int i = 0; i < 3; ++i) {
       for (int k = 0; k < 3; ++k) K(i, k) -= H(k, i);

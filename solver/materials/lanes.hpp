@@ -120,12 +120,18 @@ T trace(const Tensor<T>& a) {
   return a(0, 0) + a(1, 1) + a(2, 2);
 }
 
+/// a : b. Row by row, so that three sums grow at once.
+template <class T>
+T contract(const Tensor<T>& a, const Tensor<T>& b) {
+  T rows[3];
+  for (int i = 0; i < 3; ++i) rows[i] = a(i, 0) * b(i, 0) + a(i, 1) * b(i, 1) + a(i, 2) * b(i, 2);
+  return rows[0] + rows[1] + rows[2];
+}
+
 /// Sum of the squares of all entries.
 template <class T>
 T square_sum(const Tensor<T>& a) {
-  T sum = a.c[0] * a.c[0];
-  for (int i = 1; i < 9; ++i) sum += a.c[i] * a.c[i];
-  return sum;
+  return contract(a, a);
 }
 
 }  // namespace msml::fe

@@ -24,6 +24,20 @@ Tensor<Lanes> hooke(const Lame& m, const Tensor<Lanes>& e) {
   return s;
 }
 
+/// What Hooke's law turned by R makes of F = I + H = R U. As |U - I| = |F - R| and tr(U - I) = R : (F - R), nobody
+/// needs U: W = mu |F - R|^2 + lambda/2 (R : (F - R))^2 and P = 2 mu (F - R) + lambda R : (F - R) R.
+/// Returns R.
+template <class Out>
+Tensor<Lanes> turn(const Lame& m, const Tensor<Lanes>& H, Out& out) {
+  const Tensor<Lanes> F = deformation_gradient(H), R = polar_rotation(F);
+  Tensor<Lanes> D;
+  for (int k = 0; k < 9; ++k) D.c[k] = F.c[k] - R.c[k];
+  const Lanes volume = contract(R, D), pressure = m.lambda * volume;
+  out.energy = m.mu * square_sum(D) + 0.5 * pressure * volume;
+  for (int k = 0; k < 9; ++k) out.P.c[k] = 2.0 * m.mu * D.c[k] + pressure * R.c[k];
+  return R;
+}
+
 /// The constant tangent of small strain: dsigma_ik/dH_jl = mu (d_ij d_kl + d_il d_kj) + lambda d_ik d_jl.
 void small_tangent(const Lame& m, Lanes* A) {
   for (int I = 0; I < 9; ++I)
@@ -95,9 +109,11 @@ class LinearLaw final : public Law {
                         std::span<RotatedResponse> responses) const override {
     if (want == Want::stress || data_.strain == Strain::small || wants_exact(data_, want)) return false;
     for (std::size_t i = 0; i < gradients.size(); ++i) {
-      const auto [R, strain] = decompose(gradients[i]);
-      const Tensor<Lanes> stress = hooke(lame_, strain);
-      responses[i] = {0.5 * contract(stress, strain), lame_.mu, lame_.lambda, product(R, stress), R};
+      RotatedResponse& out = responses[i];
+      const Tensor<Lanes> R = turn(lame_, gradients[i], out);
+      for (int k = 0; k < 9; ++k) out.R.c[k] = R.c[k];
+      out.mu = lame_.mu;
+      out.lambda = lame_.lambda;
     }
     return true;
   }
@@ -152,19 +168,17 @@ class LinearLaw final : public Law {
   }
 
   void corotated(Want want, const Gradients& H, Response& out) const {
-    const auto [R, strain] = decompose(H);
-    const Tensor<Lanes> stress = hooke(lame_, strain);
-    out.energy = 0.5 * contract(stress, strain);
-    out.P = product(R, stress);
+    const Tensor<Lanes> R = turn(lame_, H, out);
     if (want == Want::stress) return;
+    Tensor<Lanes> Z{};
     if (wants_exact(data_, want)) {
-      const Lanes c = lame_.lambda * trace(strain) - 2.0 * lame_.mu;
-      corotated_tangent<Lanes>(2.0 * lame_.mu, lame_.lambda, R, spin_stiffness(c, strain), out.tangent);
+      Tensor<Lanes> strain = sym(product(R, deformation_gradient(H), true));
+      for (int i = 0; i < 3; ++i) strain(i, i) -= 1.0;
+      Z = spin_stiffness(lame_.lambda * trace(strain) - 2.0 * lame_.mu, strain);
     } else {
-      Tensor<Lanes> Z{};
       for (int i = 0; i < 3; ++i) Z(i, i) -= lame_.mu;
-      corotated_tangent<Lanes>(2.0 * lame_.mu, lame_.lambda, R, Z, out.tangent);
     }
+    corotated_tangent<Lanes>(2.0 * lame_.mu, lame_.lambda, R, Z, out.tangent);
   }
 
   LinearElastic data_;

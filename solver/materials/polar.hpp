@@ -13,7 +13,7 @@ namespace msml::fe {
 /// doi 10.1107/S0567739476001873.
 Mat3 polar_rotation(const Mat3& F);
 
-/// The same for eight points. Well-conditioned points with det F > 0 by the trace of U, for which Newton's method
+/// The same for eight points. Well-conditioned points with det F > 0 by the trace of U, for which Halley's method
 /// solves the quartic equation of optimal rotations (Theobald 2005, doi 10.1107/S0108767305015266), the others one by
 /// one.
 Tensor<Lanes> polar_rotation(const Tensor<Lanes>& F);

@@ -32,10 +32,11 @@ auto variables_of(const Kernel& kernel, const Invariants<T>& invariants) {
 }
 
 /// Energy, stress and (if wanted) tangent of `kernel` + `volumetric` at F = I + H. A Kernel<T> names its `Variables`,
-/// and kernel(variables) is the energy as a jet in them. At rest the jet's slope by j must be 0.
-template <class Kernel, class T>
-void respond(const Kernel& kernel, const Volumetric<T>& volumetric, const Tensor<T>& H, bool tangent,
-             ResponseOf<T>& out) {
+/// and kernel(variables) is the energy as a jet in them. At rest the jet's slope by j must be 0. All in one function,
+/// so that without tangent nobody computes second derivatives.
+template <bool tangent, class Kernel, class T>
+[[gnu::flatten]] void respond(const Kernel& kernel, const Volumetric<T>& volumetric, const Tensor<T>& H,
+                              ResponseOf<T>& out) {
   using Variables = typename Kernel::Variables;
   constexpr int count = Variables::count, volume = Variables::volume;
   const Invariants<T> invariants(H);
@@ -50,10 +51,11 @@ void respond(const Kernel& kernel, const Volumetric<T>& volumetric, const Tensor
     out.P.c[k] = w.first[0] * slopes[0].c[k];
     for (int x = 1; x < count; ++x) out.P.c[k] += w.first[x] * slopes[x].c[k];
   }
-  if (!tangent) return;
-  for (T& entry : out.tangent) entry = T{};
-  add_products(w, slopes, out.tangent);
-  variables.add_curvature(invariants, w, out.tangent);
+  if constexpr (tangent) {
+    for (T& entry : out.tangent) entry = T{};
+    add_products(w, slopes, out.tangent);
+    variables.add_curvature(invariants, w, out.tangent);
+  }
 }
 
 /// Cauchy stress P F^T / J and Green-Lagrange strain (F^T F - I)/2 at F = I + H from energy and P.
@@ -72,14 +74,17 @@ class PotentialLaw final : public Law, public StretchLaw {
 
   void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
-      respond(kernel_, volumetric_, gradients[i], want != Want::stress, responses[i]);
+      if (want == Want::stress)
+        respond<false>(kernel_, volumetric_, gradients[i], responses[i]);
+      else
+        respond<true>(kernel_, volumetric_, gradients[i], responses[i]);
       if (want == Want::definite_tangent) make_semidefinite(responses[i]);
     }
   }
   void measure(std::span<const Gradients> gradients, std::span<Measures> measures) const override {
     for (std::size_t i = 0; i < gradients.size(); ++i) {
       Response response;
-      respond(kernel_, volumetric_, gradients[i], false, response);
+      respond<false>(kernel_, volumetric_, gradients[i], response);
       measure_hyperelastic(gradients[i], response, measures[i]);
     }
   }

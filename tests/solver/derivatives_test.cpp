@@ -58,8 +58,8 @@ void check(const char* name, const Kernel<Lanes>& kernel, VolumeMeasure measure,
                d = random.matrix();
     ResponseOf<double> exact;
     ResponseOf<Dual> dual;
-    respond(kernel.template map<double>(same), Volumetric<double>{measure, 700}, gradient<double>(F, d), true, exact);
-    respond(kernel.template map<Dual>(as_dual), Volumetric<Dual>{measure, 700}, gradient<Dual>(F, d), false, dual);
+    respond<true>(kernel.template map<double>(same), Volumetric<double>{measure, 700}, gradient<double>(F, d), exact);
+    respond<false>(kernel.template map<Dual>(as_dual), Volumetric<Dual>{measure, 700}, gradient<Dual>(F, d), dual);
     compare(exact, dual, d, name);
   }
 }
