@@ -34,13 +34,20 @@ struct Polar {
   Tensor<T> R, strain;
 };
 
+/// U - I of F = R U.
+template <class T>
+Tensor<T> strain_of(const Tensor<T>& R, const Tensor<T>& F) {
+  Tensor<T> strain = sym(product(R, F, true));
+  for (int i = 0; i < 3; ++i) strain(i, i) -= 1.0;
+  return strain;
+}
+
 /// The decomposition of I + H, given as H.
 template <class T>
 Polar<T> decompose(const Tensor<T>& H) {
   const Tensor<T> F = deformation_gradient(H);
   Polar<T> p{polar_rotation(F), {}};
-  p.strain = sym(product(p.R, F, true));
-  for (int i = 0; i < 3; ++i) p.strain(i, i) -= 1.0;
+  p.strain = strain_of(p.R, F);
   return p;
 }
 

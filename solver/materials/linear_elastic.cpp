@@ -172,8 +172,7 @@ class LinearLaw final : public Law {
     if (want == Want::stress) return;
     Tensor<Lanes> Z{};
     if (wants_exact(data_, want)) {
-      Tensor<Lanes> strain = sym(product(R, deformation_gradient(H), true));
-      for (int i = 0; i < 3; ++i) strain(i, i) -= 1.0;
+      const Tensor<Lanes> strain = strain_of(R, deformation_gradient(H));
       Z = spin_stiffness(lame_.lambda * trace(strain) - 2.0 * lame_.mu, strain);
     } else {
       for (int i = 0; i < 3; ++i) Z(i, i) -= lame_.mu;
