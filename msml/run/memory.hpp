@@ -12,5 +12,7 @@ std::size_t peak_memory();
 
 /// Memory of this process that is resident now, in bytes; 0 where the system does not tell.
 std::size_t resident_memory();
+/// The part of it that is code and constants, read from the program's file and its libraries as far as they were used.
+std::size_t program_memory();
 
 }  // namespace msml

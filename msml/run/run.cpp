@@ -44,13 +44,14 @@ class Scheduler {
 
   RunResult run() {
     const Clock::time_point start = Clock::now();
-    result_.bare_bytes = resident_memory();
+    const std::size_t before = resident_memory() - program_memory();
     const int workers = std::max(1, std::min<int>(options_.jobs, static_cast<int>(plan_.order.size())));
     {
       std::vector<std::jthread> others;
       for (int i = 1; i < workers; ++i) others.emplace_back([this] { work(); });
       work();
     }
+    result_.bare_bytes = before + program_memory();
     result_.seconds = seconds_since(start);
     return std::move(result_);
   }

@@ -67,7 +67,7 @@ struct RunResult {
   std::vector<NodeReport> nodes;
   std::vector<Error> errors;  ///< at most one per failed node
   double seconds = 0;
-  std::size_t bare_bytes = 0;  ///< memory of the process before its first node
+  std::size_t bare_bytes = 0;  ///< memory of the process before its first node, and of code that nodes used
 };
 
 RunResult run(const Graph& graph, const Plan& plan, const Registry& registry, const RunOptions& options,

@@ -17,9 +17,15 @@ bool Coarsest::set(const Blocks<double, B, B>& A) {
           Eigen::Map<const Eigen::Matrix<double, B, B>>(A.block(p));
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(full);  // in the place of the matrix
   if (factor.info() != Eigen::Success) return false;
-  Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(full.rows(), full.cols());
-  factor.solveInPlace(inverse);
-  inverse_ = inverse.cast<float>();
+  inverse_.resize(full.rows(), full.cols());
+  constexpr Eigen::Index piece = 64;  // columns at a time: a second matrix in double precision would take room
+  for (Eigen::Index first = 0; first < full.cols(); first += piece) {
+    const Eigen::Index count = std::min(piece, full.cols() - first);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(full.rows(), count);
+    columns.middleRows(first, count).setIdentity();
+    factor.solveInPlace(columns);
+    inverse_.middleCols(first, count) = columns.cast<float>();
+  }
   return inverse_.allFinite();
 }
 
