@@ -6,11 +6,13 @@ import subprocess
 
 
 def run(binaries, quick):
-    """One entry per kernel and number of threads, medians over repetitions; none where the program is not built."""
+    """One entry per kernel and number of threads, medians over repetitions in turns with those of all others, as a
+    machine may be slower for some seconds; none where the program is not built."""
     program = os.path.join(binaries, "kernel_bench")
     if not os.path.exists(program):
         return []
-    command = [program, "--benchmark_format=json", "--benchmark_repetitions=5", "--benchmark_min_time=0.1"]
+    command = [program, "--benchmark_format=json", "--benchmark_repetitions=9", "--benchmark_min_time=0.05",
+               "--benchmark_enable_random_interleaving=true"]
     done = subprocess.run(command + (["quick"] if quick else []), capture_output=True, text=True, check=True)
     return [entry for entry in json.loads(done.stdout)["benchmarks"] if entry.get("aggregate_name") == "median"]
 
