@@ -89,17 +89,27 @@ void add_stiffness(const Lanes* A, Lanes w, const Lanes (&g)[nodes][dimension],
     Lanes scaled[dimension];
     for (int l = 0; l < dimension; ++l) scaled[l] = w * g[b][l];
     Lanes half[dimension][dimension][dimension];  // A contracted with g_b: i, j, k
+                                                  // Unrolled, so that places in A are known to the compiler.
+#pragma GCC unroll 3
     for (int i = 0; i < dimension; ++i)
+#pragma GCC unroll 3
       for (int k = 0; k < dimension; ++k)
+#pragma GCC unroll 3
         for (int j = 0; j < dimension; ++j) {
           Lanes sum = A[packed(3 * i + k, 3 * j)] * scaled[0];
           for (int l = 1; l < dimension; ++l) sum += A[packed(3 * i + k, 3 * j + l)] * scaled[l];
           half[i][j][k] = sum;
         }
-    for (int a = 0; a <= b; ++a)
-      for (int i = 0; i < dimension; ++i)
-        for (int j = 0; j < dimension; ++j)
-          block[packed(b, a)][dimension * i + j] += inner<dimension>(g[a], half[i][j]);
+    for (int a = 0; a <= b; ++a) {
+      Lanes own[dimension], sums[dimension * dimension];
+      for (int k = 0; k < dimension; ++k) own[k] = g[a][k];
+      Lanes* const out = block[packed(b, a)];
+      for (int m = 0; m < dimension * dimension; ++m) {
+        sums[m] = out[m];
+        for (int k = 0; k < dimension; ++k) sums[m] += own[k] * half[m / dimension][m % dimension][k];
+      }
+      for (int m = 0; m < dimension * dimension; ++m) out[m] = sums[m];
+    }
   }
 }
 
