@@ -71,7 +71,8 @@ class Densities {
   template <int dimension, int nodes>
   ElementMass<nodes> mass(const Points& points, const int* ids, int region, int element, bool lumped,
                           double scale = 1) const {
-    const auto& [constant, at] = regions_[static_cast<std::size_t>(region)];
+    const double constant = regions_[static_cast<std::size_t>(region)].first;
+    const auto& at = regions_[static_cast<std::size_t>(region)].second;
     const auto density = [&](const Vec3& X) { return scale * at(element, X); };
     const ElementMass<nodes> M = at ? consistent_mass<dimension, nodes>(points, ids, density)
                                     : consistent_mass<dimension, nodes>(points, ids, scale * constant);

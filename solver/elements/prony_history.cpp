@@ -47,7 +47,7 @@ Tensor<Lanes> positive_part(const Tensor<Lanes>& Q) {
     Mat3 q;
     for (int k = 0; k < 9; ++k) q(k / 3, k % 3) = Q.c[k][lane];
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(q);
-    const Mat3 V = solver.eigenvectors();
+    const Mat3& V = solver.eigenvectors();
     const Mat3 part = V * solver.eigenvalues().cwiseMax(0).asDiagonal() * V.transpose();
     for (int k = 0; k < 9; ++k) result.c[k][lane] = part(k / 3, k % 3);
   }

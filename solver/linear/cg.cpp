@@ -29,7 +29,7 @@ bool falls(const BlockMatrix& A, const Mask& fixed, const Vector& v, Vector& q) 
 
 LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
                                  long limit, CgSpace& space, Vector& r, Vector& x, long& taken) {
-  auto& [z, p, q] = space;
+  Vector &z = space.z, &p = space.p, &q = space.q;
   z.resize(r.size());
   q.resize(r.size());
   p = Vector::Zero(r.size());

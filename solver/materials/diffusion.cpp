@@ -15,9 +15,10 @@ namespace {
 class Diffusion final : public Law {
  public:
   explicit Diffusion(const Lanes& coefficients) : c_(coefficients) {
-    for (int lane = 0; lane < lanes; ++lane)
-      if (!(c_[lane] > 0) || !std::isfinite(c_[lane]))
-        throw Error(fmt::format("diffusionMaterial: coefficient = {} is not > 0", c_[lane]));
+    for (int lane = 0; lane < lanes; ++lane) {
+      const double c = c_[lane];
+      if (!(c > 0) || !std::isfinite(c)) throw Error(fmt::format("diffusionMaterial: coefficient = {} is not > 0", c));
+    }
   }
 
   void evaluate(Want want, std::span<const Gradients> gradients, std::span<Response> responses) const override {

@@ -23,23 +23,19 @@ inline Lanes lanes_of(double x) { return Lanes{} + x; }
 
 /// v[i][j] and v[j][i] change places.
 inline void transpose(Lanes (&v)[lanes]) {
-  using Order = long long __attribute__((vector_size(lanes * sizeof(long long))));
-  constexpr Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
-  constexpr Order low_pairs{0, 1, 8, 9, 4, 5, 12, 13}, high_pairs{2, 3, 10, 11, 6, 7, 14, 15};
-  constexpr Order low_halves{0, 1, 2, 3, 8, 9, 10, 11}, high_halves{4, 5, 6, 7, 12, 13, 14, 15};
   Lanes s[lanes], t[lanes];
   for (int k = 0; k < lanes; k += 2) {
-    s[k] = __builtin_shuffle(v[k], v[k + 1], even);
-    s[k + 1] = __builtin_shuffle(v[k], v[k + 1], odd);
+    s[k] = __builtin_shufflevector(v[k], v[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+    s[k + 1] = __builtin_shufflevector(v[k], v[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
   }
   for (int k = 0; k < lanes; k += 4)
     for (int i = 0; i < 2; ++i) {
-      t[k + i] = __builtin_shuffle(s[k + i], s[k + i + 2], low_pairs);
-      t[k + i + 2] = __builtin_shuffle(s[k + i], s[k + i + 2], high_pairs);
+      t[k + i] = __builtin_shufflevector(s[k + i], s[k + i + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+      t[k + i + 2] = __builtin_shufflevector(s[k + i], s[k + i + 2], 2, 3, 10, 11, 6, 7, 14, 15);
     }
   for (int k = 0; k < 4; ++k) {
-    v[k] = __builtin_shuffle(t[k], t[k + 4], low_halves);
-    v[k + 4] = __builtin_shuffle(t[k], t[k + 4], high_halves);
+    v[k] = __builtin_shufflevector(t[k], t[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+    v[k + 4] = __builtin_shufflevector(t[k], t[k + 4], 4, 5, 6, 7, 12, 13, 14, 15);
   }
 }
 
