@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads /proc/self (Linux, proc(5): clear_refs, VmHWM, VmRSS and RssFile).
+// Reads /proc/self (Linux, proc(5): clear_refs, VmHWM, RssAnon and RssFile).
 #include "msml/run/memory.hpp"
 
 #include <malloc.h>
@@ -32,7 +32,7 @@ void reset_peak_memory() {
 
 std::size_t peak_memory() { return status("VmHWM:"); }
 
-std::size_t resident_memory() { return status("VmRSS:"); }
+std::size_t own_memory() { return status("RssAnon:"); }
 
 std::size_t program_memory() { return status("RssFile:"); }
 

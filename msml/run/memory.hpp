@@ -10,9 +10,9 @@ void reset_peak_memory();
 /// Most resident memory in bytes since the last reset (or the start); 0 where the system does not tell.
 std::size_t peak_memory();
 
-/// Memory of this process that is resident now, in bytes; 0 where the system does not tell.
-std::size_t resident_memory();
-/// The part of it that is code and constants, read from the program's file and its libraries as far as they were used.
+/// Resident memory in bytes that the process has written (heap and stacks); 0 where the system does not tell.
+std::size_t own_memory();
+/// Resident code and constants, read from the program's file and its libraries as far as they were used.
 std::size_t program_memory();
 
 }  // namespace msml

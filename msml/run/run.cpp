@@ -44,7 +44,7 @@ class Scheduler {
 
   RunResult run() {
     const Clock::time_point start = Clock::now();
-    const std::size_t before = resident_memory() - program_memory();
+    const std::size_t before = own_memory();
     const int workers = std::max(1, std::min<int>(options_.jobs, static_cast<int>(plan_.order.size())));
     {
       std::vector<std::jthread> others;

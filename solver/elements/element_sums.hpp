@@ -88,8 +88,8 @@ void add_stiffness(const Lanes* A, Lanes w, const Lanes (&g)[nodes][dimension],
   for (int b = 0; b < nodes; ++b) {
     Lanes scaled[dimension];
     for (int l = 0; l < dimension; ++l) scaled[l] = w * g[b][l];
-    Lanes half[dimension][dimension][dimension];  // A contracted with g_b: i, j, k
-                                                  // Unrolled, so that places in A are known to the compiler.
+    // A contracted with g_b: i, j, k. Unrolled, so that places in A are known to the compiler.
+    Lanes half[dimension][dimension][dimension];
 #pragma GCC unroll 3
     for (int i = 0; i < dimension; ++i)
 #pragma GCC unroll 3
@@ -101,7 +101,7 @@ void add_stiffness(const Lanes* A, Lanes w, const Lanes (&g)[nodes][dimension],
           half[i][j][k] = sum;
         }
     for (int a = 0; a <= b; ++a) {
-      Lanes own[dimension], sums[dimension * dimension];
+      Lanes own[dimension], sums[dimension * dimension];  // in registers: `out` could be a place of g
       for (int k = 0; k < dimension; ++k) own[k] = g[a][k];
       Lanes* const out = block[packed(b, a)];
       for (int m = 0; m < dimension * dimension; ++m) {

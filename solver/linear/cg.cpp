@@ -20,11 +20,6 @@ double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, V
   });
 }
 
-/// True if the energy falls along v, or that cannot be said of its numbers.
-bool falls(const BlockMatrix& A, const Mask& fixed, const Vector& v, Vector& q) {
-  return !(multiply_free(A, fixed, v, q) > 0);
-}
-
 }  // namespace
 
 LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
@@ -37,7 +32,8 @@ LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const 
   while (taken < limit) {
     B(r, size, z);
     const double rho = dot(r, z);
-    if (!(rho > 0)) return falls(A, fixed, z, q) ? LinearStatus::not_positive_definite : LinearStatus::limit;
+    if (!(rho > 0))
+      return multiply_free(A, fixed, z, q) > 0 ? LinearStatus::limit : LinearStatus::not_positive_definite;
     for_pieces(p.size(), [&, beta = rho / rho_before](long, long first, long last) {
       const long count = last - first;
       p.segment(first, count) = z.segment(first, count) + beta * p.segment(first, count);

@@ -123,7 +123,7 @@ void add_steps(std::vector<double> times, Json& json) {
 }
 
 Json run(const Choice& choice) {
-  const std::size_t before = resident_memory() - program_memory();
+  const std::size_t before = own_memory();
   const fe::Model model = model_of(choice);
   std::vector<double> times;
   Vec3 at_13 = Vec3::Zero();
