@@ -104,8 +104,8 @@ class Lines(unittest.TestCase):
     def test_a_wish_is_reached_up_to_its_limit(self):
         line = lambda nu, unit: table.line_of(rows.Row("step", "tet4", 6, nu), {"answer": unit, "total": 1, "runs": 1}, [],
                                               peers.kept(), MACHINE)
-        self.assertRegex(wishes.text_of([line(0.3, 1.0), line(0.49, 1.9)], []), r"n=6, nu 0.49.* 1.9 +2 +reached")
-        self.assertRegex(wishes.text_of([line(0.3, 1.0), line(0.49, 2.1)], []), r"n=6, nu 0.49.* 2.1 +2 +short")
+        self.assertRegex(wishes.text_of(wishes.of_rows([line(0.3, 1.0), line(0.49, 1.9)], [])), r"n=6, nu 0.49.* 1.9 +2 +reached")
+        self.assertRegex(wishes.text_of(wishes.of_rows([line(0.3, 1.0), line(0.49, 2.1)], [])), r"n=6, nu 0.49.* 2.1 +2 +short")
 
     def test_a_power_law_has_its_exponent_as_slope(self):
         self.assertAlmostEqual(charts.slope([(x, 3 * x ** 1.5) for x in (10, 100, 700)]), 1.5, places=12)
@@ -113,10 +113,23 @@ class Lines(unittest.TestCase):
 
     def test_a_kernel_at_half_the_bandwidth_has_half_the_roofline(self):
         # 100 bytes at 20 GB/s take 5 ns, 10 operations at 50 GFLOP/s 0.2 ns.
-        entry = {"run_name": "x/threads:1/real_time", "real_time": 1e-3, "items": 100, "bytes_per_item": 100,
-                 "flops_per_item": 10}
-        found = kernels.share(entry, {"triad_1": 20, "fma_1": 50})
+        found = kernels.share([self.repetition("x", 1, 1e-3)], {"triad_1": 20, "fma_1": 50})
         self.assertEqual((found["bound"], round(found["share"], 12)), ("memory", 0.5))
+
+    def repetition(self, name, threads, milliseconds, **more):
+        return {"run_name": f"{name}/threads:{threads}/real_time", "real_time": milliseconds, "items": 100,
+                "bytes_per_item": 100, "flops_per_item": 10, **more}
+
+    def test_the_gain_is_that_of_two_cores_and_beside_it_that_of_all_runs(self):
+        machine = {"triad_1": 20, "fma_1": 50, "triad_2": 40, "fma_2": 100}
+        alone = [self.repetition("internal force", 1, 6)] * 3
+        both = [self.repetition("internal force", 2, t, machine_gain=g) for t, g in ((3, 1.99), (5, 1.0), (5, 1.1))]
+        line = kernels.lines_of([both, alone], machine)[1]
+        self.assertEqual((line["gain"], line["gain_of_all"], line["sound"], line["runs"]), (2, 1.2, 1, 3))
+        self.assertRegex(wishes.text_of(wishes.of_kernels([line])), r"gain of 1.8 .* 0.9 +1 +reached")
+        shared = kernels.lines_of([both[1:], alone], machine)[1]  # no run had two cores: all count
+        self.assertEqual((shared["gain"], shared["sound"]), (1.2, 0))
+        self.assertRegex(wishes.text_of(wishes.of_kernels([shared])), r"gain of 1.8 .* 1.5 +1 +short")
 
 
 if __name__ == "__main__":
