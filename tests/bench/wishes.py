@@ -69,8 +69,8 @@ def of_kernels(lines):
 
 def text_of(wishes):
     """One line per wish: what is measured, what it may be at most, and whether it is."""
-    rows = ["what is asked of ourselves: measured, at most"]
-    for what, measured, limit in wishes:
-        if measured is not None:
-            rows.append(f"  {what:52}  {measured:7.3g}  {limit:5g}  {'reached' if measured <= limit else 'short'}")
-    return "\n".join(rows)
+    known = [wish for wish in wishes if wish[1] is not None]
+    width = max((len(what) for what, *_ in known), default=0)
+    rows = [f"  {what:{width}}  {measured:7.3g}  {limit:5g}  {'reached' if measured <= limit else 'short'}"
+            for what, measured, limit in known]
+    return "\n".join(["what is asked of ourselves: measured, at most"] + rows)
