@@ -105,13 +105,13 @@ class Preparation {
   void add_reference(StudyRun& run) {
     if (run.study.truth->set.empty()) return;
     Settings settings = run.settings;
-    for (const auto& [name, value] : run.study.truth->set) {
+    for (const auto& setting : run.study.truth->set) {
       const auto same =
-          std::find_if(settings.begin(), settings.end(), [&](const auto& each) { return each.first == name; });
+          std::find_if(settings.begin(), settings.end(), [&](const auto& each) { return each.first == setting.first; });
       if (same == settings.end())
-        settings.emplace_back(name, value);
+        settings.push_back(setting);
       else
-        same->second = value;
+        same->second = setting.second;
     }
     std::shared_ptr<const Prepared>& known = references_[settings];
     if (!known) {

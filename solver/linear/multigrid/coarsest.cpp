@@ -2,6 +2,8 @@
 // Dense inverses of small matrices.
 #include "solver/linear/multigrid/coarsest.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 
 namespace msml::fe {
@@ -17,15 +19,19 @@ bool Coarsest::set(const Blocks<double, B, B>& A) {
           Eigen::Map<const Eigen::Matrix<double, B, B>>(A.block(p));
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(full);  // in the place of the matrix
   if (factor.info() != Eigen::Success) return false;
-  inverse_.resize(full.rows(), full.cols());
-  constexpr Eigen::Index piece = 64;  // columns at a time: a second matrix in double precision would take room
-  for (Eigen::Index first = 0; first < full.cols(); first += piece) {
-    const Eigen::Index count = std::min(piece, full.cols() - first);
-    Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(full.rows(), count);
-    columns.middleRows(first, count).setIdentity();
-    factor.solveInPlace(columns);
-    inverse_.middleCols(first, count) = columns.cast<float>();
-  }
+  const Eigen::Index size = full.rows();
+  inverse_.resize(size, size);
+  // With A = L L^T the last rows and columns of A^-1 are those of L22^-T L22^-1, L22 the last ones of L.
+  constexpr Eigen::Index piece = 64;  // columns of one task; all at once would take room
+  tbb::parallel_for(Eigen::Index(0), (size + piece - 1) / piece, [&](Eigen::Index k) {
+    const Eigen::Index first = k * piece, rest = size - first, count = std::min(piece, rest);
+    Eigen::MatrixXd columns = Eigen::MatrixXd::Identity(rest, count);
+    const auto L = full.bottomRightCorner(rest, rest).template triangularView<Eigen::Lower>();
+    L.solveInPlace(columns);
+    L.transpose().solveInPlace(columns);
+    inverse_.block(first, first, rest, count) = columns.cast<float>();
+    inverse_.block(first, first, count, rest) = columns.transpose().cast<float>();
+  });
   return inverse_.allFinite();
 }
 

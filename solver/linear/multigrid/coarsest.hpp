@@ -10,7 +10,6 @@ namespace msml::fe {
 /// The inverse of a small positive definite matrix.
 class Coarsest {
  public:
-  static constexpr int largest = 700;  ///< unknowns; the inverse then takes a few milliseconds
   /// False if the matrix is not positive definite.
   template <int B>
   bool set(const Blocks<double, B, B>& A);

@@ -67,6 +67,8 @@ class Level {
            (inverse_single_.size() + direction_.size() + other_.size()) * sizeof(float);
   }
 
+  /// The matrix is there in half precision.
+  bool in_halves() const { return !halves_.empty(); }
   bool halved = false;  ///< set() takes the matrix in half precision, where there is one; B = 3
   int degree = 2;       ///< of the smoother
   double lowest = 0.1;  ///< of the radius: errors below are left to the coarser grid

@@ -95,7 +95,7 @@ void Multigrid::prepare_modes(const std::vector<int>& nodes, const std::vector<c
 template <int B>
 bool Multigrid::settle(Grid<B>& grid) {
   beat();
-  grid.solved = B * grid.matrix.sparsity.rows() <= Coarsest::largest;
+  grid.solved = B * grid.matrix.sparsity.rows() <= solved_size_;
   if (nearly_incompressible()) reach_further(grid.level, false);
   const bool good = grid.solved ? coarsest_.set(grid.matrix) : grid.level.set(grid.matrix);
   const std::size_t size = B * at(grid.matrix.sparsity.rows()) + 8;
@@ -197,6 +197,8 @@ LinearStatus Multigrid::set(const BlockMatrix& A, const Mask& fixed) {
   }
   // Quadratic elements that are nearly incompressible need half as many iterations again.
   heavy_ = !(corners_ && nearly_incompressible()) && heavy(A, geometry_.smallest_poisson_ratio);
+  // An inverse that many time steps share pays where it takes a few milliseconds; else another grid costs less.
+  if (fresh_) solved_size_ = heavy_ ? 700 : 400;
   made_ = set_matrices({A, fixed_});  // grids that are half made are not kept
   return made_ ? LinearStatus::done : LinearStatus::not_positive_definite;
 }

@@ -34,6 +34,8 @@ class Multigrid {
   /// 3 numbers per node in and out (r may be written to); both are zero at fixed unknowns.
   void cycle(std::vector<float>& r, std::vector<float>& z);
   std::size_t bytes() const;
+  /// The finest grid keeps its matrix in half precision.
+  bool in_halves() const { return fine_.level.in_halves(); }
 
  private:
   /// A grid of groups below a grid with B unknowns per node.
@@ -72,6 +74,7 @@ class Multigrid {
   Mask fixed_;
   bool made_ = false, fresh_ = true;  ///< fresh_: the grids are being made
   bool heavy_ = false;                ///< inertia allows half precision on the fine grid
+  int solved_size_ = 0;               ///< unknowns of a grid that is solved exactly, at most
   std::optional<Corners> corners_;
   Grid<3> fine_, linear_;
   std::optional<Step<3, 3>> wide_;  ///< from quadratic to linear elements, where the body is nearly incompressible
