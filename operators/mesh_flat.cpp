@@ -52,7 +52,7 @@ Boundary boundary_at(const Mesh& mesh, const std::vector<int>& flat_cells) {
   for (const auto& [cell, local] : outer_faces(near)) {
     // A face without a marked point may have a neighbour that was left out.
     const auto& f = tet_faces[static_cast<std::size_t>(local)];
-    const auto corner = [&](std::size_t i) { return near.cell(cell)[f[i % 3]]; };
+    const auto corner = [&f, nodes = near.cell(cell)](std::size_t i) { return nodes[f[i % 3]]; };
     const auto seen = [&](std::size_t i) { return marked[static_cast<std::size_t>(corner(i))] != 0; };
     if (!seen(0) && !seen(1) && !seen(2)) continue;
     boundary.faces[ids[static_cast<std::size_t>(cell)]].push_back(local);

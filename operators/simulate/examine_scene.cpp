@@ -250,7 +250,8 @@ std::vector<Finding> certain(const std::vector<std::vector<Finding>>& fillings) 
     for (const Finding& one : std::set<Finding>(filling.begin(), filling.end())) ++counts[one];
   const auto rare = [&](const Finding& one) { return 3 * counts[one] < fillings.size(); };
   std::vector<Finding> kept;
-  for (const auto& [one, count] : counts) {
+  for (const auto& entry : counts) {
+    const Finding& one = entry.first;
     const auto agrees = [&](const std::vector<Finding>& filling) {
       return std::ranges::any_of(filling, [&](const Finding& other) {
         const bool same = !(one < other) && !(other < one);

@@ -48,7 +48,7 @@ std::vector<std::string> columns(const Places& places, const FieldFacts& facts) 
   if (!places.distances.empty()) names.emplace_back("distance");
   const auto group = [&](const std::string& tail) {
     for (const std::string& component : component_names(facts))
-      names.push_back(facts.name + (component.empty() ? "" : "_" + component) + tail);
+      names.push_back(fmt::format("{}{}{}{}", facts.name, component.empty() ? "" : "_", component, tail));
   };
   if (!places.spots.empty()) group("");
   for (const int node : places.nodes) group(places.nodes.size() > 1 ? fmt::format("@{}", node) : "");
