@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Kernels one by one, with the bytes and operations that each needs, for the share of what the machine can do.
 #include <benchmark/benchmark.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -14,7 +12,7 @@
 #include "solver/materials/hyperelastic.hpp"
 #include "solver/materials/neo_hookean.hpp"
 #include "solver/materials/polar.hpp"
-#include "tests/bench/multiply_adds.hpp"
+#include "tests/bench/handover.hpp"
 #include "tests/solver/meshes.hpp"
 
 namespace {
@@ -84,31 +82,16 @@ void count(benchmark::State& state, double items, double bytes, double flops) {
   state.counters["items"] = items;
 }
 
-/// What a second thread gives to multiply-adds in registers right now: 2 where each has a core of its own. The
-/// processors of a virtual machine share one at times.
-double gain_of_machine() {
-  using Clock = std::chrono::steady_clock;
-  const auto time = [](int threads) {
-    const Clock::time_point start = Clock::now();
-    tbb::parallel_for(
-        0, threads, [](int k) { benchmark::DoNotOptimize(multiply_adds(300000, k + 1)); }, tbb::static_partitioner{});
-    return std::chrono::duration<double>(Clock::now() - start).count();
-  };
-  time(2);  // wakes the other thread
-  const double both = time(2);
-  return 2 * time(1) / both;
-}
-
-/// Runs the body with as many threads as the last argument says; with two, notes the gain of the machine, the lower of
-/// those before and after.
+/// Runs the body with as many threads as the last argument says; with two, notes how far they are apart, the longer of
+/// the times before and after.
 template <class Body>
 void repeat(benchmark::State& state, int threads, const Body& body) {
+  const double before = threads == 2 ? handover() : 0;
   tbb::task_arena arena(threads);
   arena.execute([&] {
-    const double before = threads == 2 ? gain_of_machine() : 0;
     for (auto _ : state) body();
-    if (threads == 2) state.counters["machine_gain"] = std::min(before, gain_of_machine());
   });
+  if (threads == 2) state.counters["handover"] = std::max(before, handover());
 }
 
 /// Reads node numbers, one Jacobian with its weight, displacements; adds to forces.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What this machine can do at most: memory bandwidth and multiply-adds, as one line of JSON. `wake GB` wakes it
-// instead.
+// What this machine can do at most: memory bandwidth and multiply-adds, and how far its processors are apart, as one
+// line of JSON. `wake GB` wakes it instead.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,12 +12,13 @@
 #include <thread>
 #include <vector>
 
-#include "tests/bench/multiply_adds.hpp"
+#include "tests/bench/handover.hpp"
 #include "tests/bench/wake.hpp"
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Lanes = double __attribute__((vector_size(64)));
 
 double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -69,14 +70,21 @@ double triad(int threads) {
   return 24.0 * static_cast<double>(share * static_cast<std::size_t>(threads)) / seconds;
 }
 
-/// Operations per second.
+/// Multiply-adds on registers, two operations each, per second.
 double multiply_adds(int threads) {
-  constexpr int rounds = 4000000;
+  constexpr int chains = 16, rounds = 4000000;
   std::vector<double> sums(static_cast<std::size_t>(threads));
-  const double seconds = shortest(threads, 5, [&](int thread) {
-    sums[static_cast<std::size_t>(thread)] = msml::multiply_adds(rounds, thread + 1);
-  });
-  return sums[0] > 0 ? msml::operations_per_round * rounds * threads / seconds : 0;
+  const auto work = [&](int thread) {
+    Lanes x[chains];
+    for (int k = 0; k < chains; ++k) x[k] = Lanes{} + k;
+    const Lanes factor = Lanes{} + 0.999999, term = Lanes{} + 1e-6 * (thread + 1);
+    for (int r = 0; r < rounds; ++r)
+      for (Lanes& chain : x) chain = chain * factor + term;
+    double& sum = sums[static_cast<std::size_t>(thread)];
+    for (const Lanes& chain : x) sum += chain[0] + chain[7];
+  };
+  const double seconds = shortest(threads, 5, work);
+  return sums[0] > 0 ? 2.0 * 8 * chains * rounds * threads / seconds : 0;
 }
 
 /// A virtual machine lends free memory to others too: touches so much of it.
@@ -92,7 +100,9 @@ void wake(double gigabytes) {
 
 int main(int argc, char** argv) {
   if (argc == 3 && std::string(argv[1]) == "wake") return wake(std::atof(argv[2])), 0;
-  fmt::print("{{\"triad_1\": {:.2f}, \"triad_2\": {:.2f}, \"fma_1\": {:.1f}, \"fma_2\": {:.1f}, \"processors\": {}}}\n",
-             1e-9 * triad(1), 1e-9 * triad(2), 1e-9 * multiply_adds(1), 1e-9 * multiply_adds(2),
-             std::thread::hardware_concurrency());
+  fmt::print(
+      "{{\"triad_1\": {:.2f}, \"triad_2\": {:.2f}, \"fma_1\": {:.1f}, \"fma_2\": {:.1f}, \"handover_ns\": {:.0f}, "
+      "\"processors\": {}}}\n",
+      1e-9 * triad(1), 1e-9 * triad(2), 1e-9 * multiply_adds(1), 1e-9 * multiply_adds(2), msml::handover(),
+      std::thread::hardware_concurrency());
 }

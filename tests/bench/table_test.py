@@ -120,16 +120,16 @@ class Lines(unittest.TestCase):
         return {"run_name": f"{name}/threads:{threads}/real_time", "real_time": milliseconds, "items": 100,
                 "bytes_per_item": 100, "flops_per_item": 10, **more}
 
-    def test_the_gain_is_that_of_two_cores_and_beside_it_that_of_all_runs(self):
+    def test_the_gain_is_that_of_near_processors_and_beside_it_that_of_all_runs(self):
         machine = {"triad_1": 20, "fma_1": 50, "triad_2": 40, "fma_2": 100}
         alone = [self.repetition("internal force", 1, 6)] * 3
-        both = [self.repetition("internal force", 2, t, machine_gain=g) for t, g in ((3, 1.99), (5, 1.0), (5, 1.1))]
+        both = [self.repetition("internal force", 2, t, handover=ns) for t, ns in ((3, 40), (5, 180), (5, 190))]
         line = kernels.lines_of([both, alone], machine)[1]
-        self.assertEqual((line["gain"], line["gain_of_all"], line["sound"], line["runs"]), (2, 1.2, 1, 3))
+        self.assertEqual((line["gain"], line["gain_of_all"], line["near"], line["runs"]), (2, 1.2, 1, 3))
         self.assertRegex(wishes.text_of(wishes.of_kernels([line])), r"gain of 1.8 .* 0.9 +1 +reached")
-        shared = kernels.lines_of([both[1:], alone], machine)[1]  # no run had two cores: all count
-        self.assertEqual((shared["gain"], shared["sound"]), (1.2, 0))
-        self.assertRegex(wishes.text_of(wishes.of_kernels([shared])), r"gain of 1.8 .* 1.5 +1 +short")
+        far = kernels.lines_of([both[1:], alone], machine)[1]  # none was near: all count
+        self.assertEqual((far["gain"], far["near"]), (1.2, 0))
+        self.assertRegex(wishes.text_of(wishes.of_kernels([far])), r"gain of 1.8 .* 1.5 +1 +short")
 
 
 if __name__ == "__main__":
