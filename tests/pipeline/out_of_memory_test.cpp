@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/pipeline/program.hpp"
+#include "tests/sanitized.hpp"
 
 namespace msml::testing {
 namespace {
@@ -13,12 +14,6 @@ namespace {
 using Json = nlohmann::json;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
-
-#ifdef __SANITIZE_ADDRESS__
-constexpr bool sanitized = true;  // which reserves terabytes of addresses
-#else
-constexpr bool sanitized = false;
-#endif
 
 class OutOfMemory : public ::testing::Test {
  protected:
