@@ -141,8 +141,8 @@ TEST(GeneralizedAlpha, KeepsMomentumWhereTheStepsChangeTheirLength) {
     for (const double radius : {0.0, 0.5, 0.8, 1.0})
       for (const double tolerance : {0.9, 1e-3, 1e-5}) {
         std::vector<double> kinks;
-        double area = 0, moment = 0;  // of the table, the second about t = 2
-        double way = 0, round_off = 0;
+        double area = 0, moment = 0;    // of the table, the second about t = 2
+        double way = 0, round_off = 0;  // displacement at the kinks, and what its own may do to the momentum
         const double beta = 1 / ((radius + 1) * (radius + 1));
         for (std::size_t k = 0; k < table.size(); ++k) {
           kinks.push_back(table[k][0]);

@@ -122,6 +122,20 @@ TEST(Halves, BeginWhereTheyHardlyCostIterations) {
   EXPECT_FALSE(halved(CellKind::tet10, 0.49, 1));
 }
 
+// Two bytes a number instead of four, and one scale a row.
+TEST(Halves, TakeHalfTheMemory) {
+  if (!widens_halves()) GTEST_SKIP() << "this processor does not widen halves";
+  const Bar bar(CellKind::tet4, 0.3, 1);
+  const auto bytes = [&](bool halved) {
+    Level<3> level;
+    level.halved = halved;
+    EXPECT_TRUE(level.set(FreeBlocks{bar.A, bar.fixed}));
+    return level.bytes();
+  };
+  const std::size_t saved = 2 * bar.A.values.size();
+  EXPECT_LT(bytes(true) + saved / 2, bytes(false));
+}
+
 // A soft half that is nearly incompressible does not lower what is asked of the other one.
 TEST(Halves, BeginWithTheSmallestPoissonRatio) {
   if (!widens_halves()) GTEST_SKIP() << "this processor does not widen halves";
