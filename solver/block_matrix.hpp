@@ -10,7 +10,8 @@
 
 namespace msml::fe {
 
-using Vector = Eigen::VectorXd;  ///< 3 numbers per node, node after node
+using Vector = Eigen::VectorXd;       ///< 3 numbers per node, node after node
+using Eight = std::array<double, 8>;  ///< of one unknown the numbers of eight vectors
 
 /// Which nodes share an element. Symmetric, sorted, diagonal included.
 struct Pattern {
@@ -51,7 +52,12 @@ struct BlockMatrix {
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y);
 /// The rows of nodes [first, last) alone; y has its size already.
 void multiply(const BlockMatrix& A, int first, int last, const Vector& x, Vector& y);
-void multiply(const ScalarMatrix& A, const Vector& x, Vector& y);
+/// y = s A x.
+void multiply(const ScalarMatrix& A, const Vector& x, Vector& y, double s = 1);
+/// The rows of nodes [first, last) alone; y has its size already.
+void multiply(const ScalarMatrix& A, int first, int last, const Vector& x, Vector& y, double s);
+/// The same of eight vectors; Y has the size of X.
+void multiply(const ScalarMatrix& A, const std::vector<Eight>& X, std::vector<Eight>& Y, double s = 1);
 
 /// A += s M on every block's diagonal.
 void add(BlockMatrix& A, double s, const ScalarMatrix& M);

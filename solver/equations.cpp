@@ -62,9 +62,10 @@ Equations::Equations(const Model& model)
   for (const Step& step : model.steps) loads_.push_back(make_loads(model, step, numbering(), mass_));
   for (const LoadSet& set : loads_) {
     has_followers_ = has_followers_ || !set.followers.empty();
-    if (!set.springs.empty()) small_strain_ = false;
+    has_springs_ = has_springs_ || !set.springs.empty();
     for (const SpringLink& spring : set.springs) has_dampers_ = has_dampers_ || spring.damping > 0 || spring.damping_at;
   }
+  if (has_springs_) small_strain_ = false;
 }
 
 NodeGeometry Equations::geometry() const {

@@ -71,6 +71,7 @@ class Equations {
   /// Inertia M a, and damping alpha M v + C w; `C` may be null, `w` is v where it is not given.
   void evaluate_motion(const Vector& velocity, const Vector& acceleration, const BlockMatrix* C, Forces& forces,
                        const Vector* w = nullptr) const;
+  bool has_springs() const { return has_springs_; }  ///< true if a step has one
   bool has_dampers() const { return has_dampers_; }  ///< true if a spring of a step has one
 
  private:
@@ -81,7 +82,7 @@ class Equations {
   std::vector<LoadSet> loads_;
   double poisson_ratio_ = 0;  ///< the largest of the regions
   double smallest_poisson_ratio_ = 0.5;
-  bool small_strain_ = true, has_followers_ = false, has_dampers_ = false, has_history_ = false;
+  bool small_strain_ = true, has_followers_ = false, has_springs_ = false, has_dampers_ = false, has_history_ = false;
 };
 
 }  // namespace msml::fe

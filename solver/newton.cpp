@@ -46,6 +46,10 @@ Newton::Newton(const Model& model, const Equations& equations)
     barrier_ = barrier_ || (!region.law->survives_inversion() && !region.law->small_strain());
   energetic_ = !equations.has_followers() && !equations.has_history() &&
                (model.formulation == Formulation::standard || model.formulation == Formulation::fbar);
+  // Nothing else may add to it.
+  const bool alone = !equations.has_followers() && !equations.has_springs() && model.settings.damping_stiffness == 0;
+  if (want_ == Want::single_tangent && is_dynamic(model.settings.integrator) && alone)
+    kept_ = equations.elements().kept_tangent();
   if (equations.has_followers()) followers_ = std::make_unique<BlockMatrix>(equations.elements().pattern());
 }
 
@@ -53,7 +57,7 @@ void Newton::evaluate(const Increment& increment, const Vector& u, Want want, bo
   pulse();
   const Stopwatch watch(seconds_assembly_);
   if (with_tangent) linear_->place(u);
-  equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? &tangent_ : nullptr,
+  equations_.evaluate(u, increment.loads, want, forces_, with_tangent ? place_of(want) : nullptr,
                       with_tangent ? followers_.get() : nullptr);
   equations_.evaluate_motion(increment.motion.velocity_at(u), increment.motion.acceleration_at(u),
                              increment.damping_matrix, forces_);
@@ -75,7 +79,7 @@ void Newton::prepare(const Vector& u, const ScaledLoads& loads) {
   pulse();
   const Stopwatch watch(seconds_assembly_);
   linear_->place(u);
-  equations_.evaluate(u, loads, want_, forces_, &tangent_, followers_.get());
+  equations_.evaluate(u, loads, want_, forces_, place_of(want_), followers_.get());
   tangent_current_ = true;
   springs_in_tangent_ = springs_of(loads);
 }

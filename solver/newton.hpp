@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's method for one increment of load or time.
 #pragma once
+#include <optional>
+
+#include "solver/effective_products.hpp"
 #include "solver/equations.hpp"
 #include "solver/linear/linear_system.hpp"
 
@@ -119,8 +122,8 @@ class Newton {
   Vector residual(const Increment& increment) const;
   /// What round-off changes in displacements at u and in strains times the size of elements.
   double finest(const Vector& u) const;
-  const Forces& forces() const { return forces_; }         ///< at the last u that was evaluated
-  const BlockMatrix& tangent() const { return tangent_; }  ///< as prepare() left it; an increment may change it
+  const Forces& forces() const { return forces_; }  ///< at the last u that was evaluated
+  const BlockMatrix& tangent();                     ///< as prepare() left it; an increment may change it
   const BlockMatrix* followers() const { return followers_.get(); }  ///< null without follower pressure
   int iterations() const { return iterations_; }                     ///< so far
   /// Adds to the counts of iterations and linear solves.
@@ -132,6 +135,10 @@ class Newton {
  private:
   /// The matrix of the increment; unless it is to be kept, the tangent may become it.
   LinearStatus factor(const Increment& increment, bool keep_tangent = true);
+  /// Where the tangent of `want` goes; null: the elements keep it.
+  BlockMatrix* place_of(Want want);
+  /// The linear system takes the tangent that elements keep, with inertia.
+  bool take_kept(const Increment& increment, double inertia);
   /// What a linear solution may leave: far from equilibrium a thousandth serves, and less the nearer it is, so that the
   /// iteration keeps its order (Dembo, Eisenstat and Steihaug 1982, doi 10.1137/0719025). With one solution a step it
   /// is what was asked for, unless forces cancel but for what round-off explains at each unknown: a body at rest costs
@@ -188,6 +195,9 @@ class Newton {
   std::unique_ptr<LinearSystem> unsymmetric_;  ///< takes over where follower pressure makes the iteration fail
   BlockMatrix tangent_, effective_;            ///< effective_: with inertia, damping and what else makes it solvable
   const BlockMatrix* factored_ = &tangent_;    ///< the one of both that was factorised last
+  const KeptTangent* kept_ = nullptr;          ///< serves instead of tangent_ with one solution a step; null: does not
+  bool held_ = false;                          ///< the tangent evaluated last is that, and tangent_ an older one
+  std::optional<EffectiveProducts> products_;  ///< of the system that was solved last with it
   std::unique_ptr<BlockMatrix> whole_;         ///< effective_ and followers_; null until needed
   std::unique_ptr<BlockMatrix> followers_;     ///< stiffness of the follower pressure; null without
   Forces forces_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linear systems of Newton's method.
 #include <algorithm>
+#include <utility>
 
 #include "solver/linear/gmres.hpp"
 #include "solver/newton.hpp"
@@ -56,17 +57,34 @@ void keep_in_planes(const Increment& increment, Vector& step) {
 
 }  // namespace
 
+BlockMatrix* Newton::place_of(Want want) {
+  held_ = kept_ && want == Want::single_tangent;
+  return held_ ? nullptr : &tangent_;
+}
+
+const BlockMatrix& Newton::tangent() {
+  if (std::exchange(held_, false)) kept_->assemble(tangent_);
+  return tangent_;
+}
+
+bool Newton::take_kept(const Increment& increment, double inertia) {
+  products_.emplace(*kept_, inertia, equations_.mass(), tangent_);
+  return linear_->take(*products_, increment.fixed);
+}
+
 LinearStatus Newton::factor(const Increment& increment, bool keep_tangent) {
   const Kinematics& motion = increment.motion;
   const Settings& settings = model_.settings;
   const bool slides = increment.slides && !increment.slides->empty();
-  factored_ = &tangent_;
-  if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
-    return linear_->factor(tangent_, increment.fixed);
   // Divided by force_share, so that the tangent is there as it is.
   const double inertia = motion.acceleration_factor * motion.inertia_share / motion.force_share +
                          motion.velocity_factor * settings.damping_mass;
   const bool plain = motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_;
+  if (held_ && plain && take_kept(increment, inertia)) return LinearStatus::done;
+  tangent();
+  factored_ = &tangent_;
+  if (!motion.dynamic() && !rigid_free_ && !lifted_ && !slides && !followers_)
+    return linear_->factor(tangent_, increment.fixed);
   if (plain && !keep_tangent && !increment.damping_matrix) {
     add(tangent_, inertia, equations_.mass());
     tangent_current_ = false;
@@ -140,7 +158,10 @@ LinearStatus Newton::attempt(const Increment& increment, const Vector& jump, con
   pulse();
   Vector right = residual / increment.motion.force_share, product;
   if (jump.size() > 0) {
-    multiply(tangent_, jump, product);
+    if (held_)
+      kept_->multiply(0, equations_.mass(), jump, product);
+    else
+      multiply(tangent_, jump, product);
     right -= product;
     if (followers_) {
       multiply(*followers_, jump, product);

@@ -87,6 +87,18 @@ struct ElementPoints {
 /// Told the place of an element in Numbering::elements and what its points are.
 using PointsVisitor = std::function<void(std::size_t element, const ElementPoints& points)>;
 
+/// A tangent that elements keep as what it is made of, since products with it cost less than to write its matrix.
+class KeptTangent {
+ public:
+  virtual ~KeptTangent() = default;
+  /// y = K x + s M x.
+  virtual void multiply(double s, const ScalarMatrix& M, const Vector& x, Vector& y) const = 0;
+  /// The same of eight vectors; Y has the size of X.
+  virtual void multiply(double s, const ScalarMatrix& M, const std::vector<Eight>& X, std::vector<Eight>& Y) const = 0;
+  /// matrix = K.
+  virtual void assemble(BlockMatrix& matrix) const = 0;
+};
+
 /// Elements of one kind. Sums are added in an order fixed by the mesh alone: results are equal bit for bit for every
 /// number of threads. Elements of a chunk are added by one thread; chunks of one colour share no node.
 class Elements {
@@ -94,6 +106,8 @@ class Elements {
   virtual ~Elements() = default;
   /// force += internal force; matrix (if not null) = tangent as `want` says: set, not added to. One call at a time.
   virtual Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const = 0;
+  /// The tangent that add_internal() with Want::single_tangent and without a matrix kept last; null: none is kept.
+  virtual const KeptTangent* kept_tangent() const { return nullptr; }
   /// mass += consistent (or lumped) mass with the regions' densities.
   virtual void add_mass(bool lumped, ScalarMatrix& mass) const = 0;
   /// Calls `visit` once for every element of numbering().elements with its displacement gradients, from several

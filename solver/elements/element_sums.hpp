@@ -45,15 +45,22 @@ void gather_vectors(const Batch& batch, const double* values, Lanes (&vectors)[n
 #endif
 }
 
+/// Of each of eight elements the vectors a and a + 1 with a number more behind each.
+template <int nodes>
+void pair_vectors(const Lanes (&vectors)[nodes][3], int a, Lanes (&rows)[lanes]) {
+  for (int i = 0; i < 3; ++i) rows[i] = vectors[a][i], rows[4 + i] = vectors[a + 1][i];
+  rows[3] = rows[7] = Lanes{};
+  transpose(rows);
+}
+
 /// Adds such vectors of the first `count` elements to those of their nodes.
 template <int nodes, class Batch>
 void scatter_vectors(const Batch& batch, const Lanes (&vectors)[nodes][3], double* values) {
   static_assert(nodes % 2 == 0);
   using Two = double __attribute__((vector_size(16)));
   for (int a = 0; a < nodes; a += 2) {
-    Lanes rows[lanes] = {vectors[a][0],     vectors[a][1],     vectors[a][2],     {},
-                         vectors[a + 1][0], vectors[a + 1][1], vectors[a + 1][2], {}};
-    transpose(rows);
+    Lanes rows[lanes];
+    pair_vectors(vectors, a, rows);
     for (int lane = 0; lane < batch.count; ++lane)
       for (int s = 0; s < 2; ++s) {
         double* out = values + 3 * batch.node[lane][a + s];
@@ -204,6 +211,15 @@ Assembled add_chunks(const std::vector<std::vector<Chunk>>& colours, const Add& 
     for (const Assembled& part : parts) merge(sum, part);
   }
   return sum;
+}
+
+/// Calls body(batch) for every batch, chunk by chunk as above.
+template <class Body>
+void for_batches(const std::vector<std::vector<Chunk>>& colours, const Body& body) {
+  for (const auto& chunks : colours)
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b) body(static_cast<std::size_t>(b));
+    });
 }
 
 /// The same with add(batch) for every batch.

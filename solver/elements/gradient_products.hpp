@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the stiffness of straight tetrahedra is made of.
+// What the stiffness of straight quadratic tetrahedra is made of.
 #pragma once
 #include <array>
 
@@ -37,11 +37,10 @@ constexpr GradientProduct quadratic_product(int a, int b) {
   return product;
 }
 
-template <int nodes>
-constexpr std::array<GradientProduct, 16 * nodes> make_products() {
-  std::array<GradientProduct, 16 * nodes> products;
-  for (int a = 0; a < nodes && nodes == 10; ++a)
-    for (int b = 0; b < nodes; ++b) products[static_cast<std::size_t>(16 * a + b)] = quadratic_product(a, b);
+constexpr std::array<GradientProduct, 160> make_products() {
+  std::array<GradientProduct, 160> products;
+  for (int a = 0; a < 10; ++a)
+    for (int b = 0; b < 10; ++b) products[static_cast<std::size_t>(16 * a + b)] = quadratic_product(a, b);
   return products;
 }
 
@@ -55,7 +54,6 @@ void set_mid_gradients(T (&G)[10][3]) {
 }
 
 /// Of nodes a and b at 16 a + b.
-template <int nodes>
-inline constexpr std::array<GradientProduct, 16 * nodes> gradient_products = detail::make_products<nodes>();
+inline constexpr std::array<GradientProduct, 160> gradient_products = detail::make_products();
 
 }  // namespace msml::fe

@@ -6,15 +6,14 @@
 
 #include <cstring>
 
-#include "solver/elements/gradient_products.hpp"
-
 namespace msml::fe {
 namespace {
 
 using Four = double __attribute__((vector_size(32)));
 using Two = double __attribute__((vector_size(16)));
 
-constexpr int ahead = 48;  // parts that are asked for before they are needed, about those of a row
+constexpr std::size_t blocks = 16;  // of an element
+constexpr int ahead = 48;           // parts that are asked for before they are needed, about those of a row
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -44,79 +43,67 @@ struct Rows {
 };
 
 /// A block while it is summed: D is gathered for as long as elements agree in what multiplies it.
-template <int nodes>
 struct Block {
-  Rows values, first, second;
-  double ratio = 0, of_first = 0, of_second = 0;
+  Rows values, D;
+  double ratio = 0;
   bool begun = false;
 
-  void add(const double (&h)[nodes][4], unsigned a, unsigned b) {
-    const GradientProduct& product = gradient_products<nodes>[16 * a + b];
-    if (h[a][3] != ratio || (nodes > 4 && product.first != of_first)) {
+  void add(const double (&h)[4][4], unsigned a, unsigned b) {
+    if (h[a][3] != ratio) {
       if (begun) close();
-      ratio = h[a][3], of_first = product.first, of_second = product.second;
+      ratio = h[a][3];
     }
     begun = true;
-    first.add(h[a], h[b]);
-    for (std::size_t n = 0; nodes > 4 && n < at(product.count); ++n)
-      second.add(h[product.pairs[n][0]], h[product.pairs[n][1]]);
+    D.add(h[a], h[b]);
   }
   /// Adds D^T + ratio D + tr(D) I.
   void close() {
-    Rows D = first;
-    for (int i = 0; i < 3 && nodes > 4; ++i) D.row[i] = of_first * first.row[i] + of_second * second.row[i];
     const Rows turned = D.transposed();
     const double trace = D.row[0][0] + D.row[1][1] + D.row[2][2];
     for (int i = 0; i < 3; ++i) values.row[i] += turned.row[i] + ratio * D.row[i];
     values.row[0] += trace * Four{1, 0, 0, 0};
     values.row[1] += trace * Four{0, 1, 0, 0};
     values.row[2] += trace * Four{0, 0, 1, 0};
-    first = second = {};
+    D = {};
   }
 };
 
 }  // namespace
 
-template <int nodes>
-RotatedRows<nodes>::RotatedRows(PatternPtr pattern, const std::vector<int>& positions)
+RotatedRows::RotatedRows(PatternPtr pattern, const std::vector<int>& positions)
     : pattern_(std::move(pattern)),
-      elements_(positions.size() / at(nodes * nodes)),
+      elements_(positions.size() / blocks),
       first_(pattern_->columns.size() + 1, 0),
-      parts_(elements_.size() * at(nodes * (nodes - 1)) + ahead, 0) {
-  constexpr std::size_t blocks = nodes * nodes;
-  const auto off_diagonal = [](std::size_t k) { return k % blocks / nodes != k % nodes; };
+      parts_(12 * elements_.size() + ahead, 0) {
+  const auto off_diagonal = [](std::size_t k) { return k % blocks / 4 != k % 4; };
   for (std::size_t k = 0; k < positions.size(); ++k) first_[at(positions[k]) + 1] += off_diagonal(k);
   for (std::size_t p = 1; p < first_.size(); ++p) first_[p] += first_[p - 1];
   std::vector<int> next(first_.begin(), first_.end() - 1);
   for (std::size_t k = 0; k < positions.size(); ++k)
     if (off_diagonal(k))
-      parts_[at(next[at(positions[k])]++)] =
-          static_cast<unsigned>(k / blocks * stride + 16 * (k % blocks / nodes) + k % nodes);
+      parts_[at(next[at(positions[k])]++)] = static_cast<unsigned>(k / blocks * stride + 16 * (k % blocks / 4) + k % 4);
 }
 
-template <int nodes>
-void RotatedRows<nodes>::set(int first, int count, const Tensor<Lanes>& R, Lanes stiffness, Lanes ratio,
-                             const Lanes (&gradients)[4][3]) {
+void RotatedRows::set(int first, int count, const Tensor<Lanes>& R, Lanes stiffness, Lanes ratio,
+                      const Lanes (&gradients)[4][3]) {
   const Lanes size = root(stiffness);
-  Lanes h[nodes][3];
+  Lanes h[4][3];
   for (int a = 0; a < 4; ++a)
     for (int i = 0; i < 3; ++i)
       h[a][i] = size * (R(i, 0) * gradients[a][0] + R(i, 1) * gradients[a][1] + R(i, 2) * gradients[a][2]);
-  if constexpr (nodes == 10) set_mid_gradients(h);
-  for (int a = 0; a < nodes; a += 2) {
+  for (int a = 0; a < 4; a += 2) {
     Lanes entries[lanes] = {h[a][0], h[a][1], h[a][2], ratio, h[a + 1][0], h[a + 1][1], h[a + 1][2], ratio};
     transpose(entries);
     for (int e = 0; e < count; ++e) std::memcpy(elements_[at(first + e)].h[a], &entries[e], sizeof(Lanes));
   }
 }
 
-template <int nodes>
-void RotatedRows<nodes>::sum_row(int row, double* out) const {
+void RotatedRows::sum_row(int row, double* out) const {
   const int diagonal = pattern_->diagonal[at(row)];
   Rows own;
   for (int p = pattern_->offsets[at(row)]; p < pattern_->offsets[at(row) + 1]; ++p) {
     if (p == diagonal) continue;
-    Block<nodes> block;
+    Block block;
     for (int k = first_[at(p)]; k < first_[at(p) + 1]; ++k) {
       const unsigned soon = parts_[at(k + ahead)], pair = parts_[at(k)] % stride;
       __builtin_prefetch(elements_[soon / stride].h[soon % stride / 16]);
@@ -132,15 +119,11 @@ void RotatedRows<nodes>::sum_row(int row, double* out) const {
   own.write(out + 9 * at(diagonal));
 }
 
-template <int nodes>
-void RotatedRows<nodes>::sum(BlockMatrix& matrix) const {
+void RotatedRows::sum(BlockMatrix& matrix) const {
   matrix.values.resize(9 * pattern_->columns.size());
   tbb::parallel_for(tbb::blocked_range<int>(0, pattern_->nodes(), 128), [&](const auto& range) {
     for (int row = range.begin(); row < range.end(); ++row) sum_row(row, matrix.values.data());
   });
 }
-
-template class RotatedRows<4>;
-template class RotatedRows<10>;
 
 }  // namespace msml::fe

@@ -204,7 +204,7 @@ void SimplexElements<dimension, nodes, count>::add_tangent(const Batch& batch, c
 
 template <int dimension, int nodes, int count>
 bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
-  return dimension == 3 && nodes == 4 && !remembers_ && RotatedRows<4>::serves(numbering_.elements.size()) &&
+  return dimension == 3 && nodes == 4 && !remembers_ && RotatedRows::serves(numbering_.elements.size()) &&
          std::all_of(batches_.begin(), batches_.end(),
                      [&](const Batch& batch) { return batch.laws.laws.front()->evaluate_rotated(want, {}, {}); });
 }
@@ -212,7 +212,7 @@ bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
                                                                 BlockMatrix& matrix) const {
-  if (!rows_) rows_.emplace(pattern_, positions_of_blocks<nodes>(batches_));
+  if (!rows_) rows_.emplace(pattern_, positions_of_blocks(batches_));
   const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
     laws.laws.front()->evaluate_rotated(want, gradients, responses);
   };
@@ -260,10 +260,7 @@ void SimplexElements<dimension, nodes, count>::add_mass(bool lumped, ScalarMatri
         mass.values[static_cast<std::size_t>(batch.position[lane][k])] += M(k / nodes, k % nodes);
     }
   };
-  for (const auto& chunks : colours_)
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-      for (int b = chunks[c].first; b < chunks[c].last; ++b) add(batches_[static_cast<std::size_t>(b)]);
-    });
+  for_batches(colours_, [&](std::size_t b) { add(batches_[b]); });
 }
 
 template <int dimension, int nodes, int count>

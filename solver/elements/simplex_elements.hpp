@@ -86,8 +86,8 @@ class SimplexElements final : public Elements {
   std::vector<Batch> batches_;
   std::vector<typename Batch::Positions> block_positions_;  ///< of the lanes of all batches
   std::vector<std::vector<Chunk>> colours_;
-  mutable int matrices_ = 0;                    ///< asked for so far
-  mutable std::optional<RotatedRows<4>> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
+  mutable int matrices_ = 0;                 ///< asked for so far
+  mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
   std::array<Barycentric<dimension>, count> barycentric_;  ///< of the quadrature points
 };

@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <cstring>
 
-#include "solver/elements/gradient_products.hpp"
 #include "solver/materials/corotation.hpp"
 
 namespace msml::fe {
@@ -47,33 +46,16 @@ Tensor<Lanes> inverse_of(const Tensor<Lanes>& D, const Tensor<Lanes>& U) {
   return inverse;
 }
 
-/// The stiffness of straight elements of one law, from what gradient_products says: made faster than read.
-void make_stiffness(const RotationBatch& batch, RestStiffness& K) {
-  Lanes G[10][3];
-  std::memcpy(G, batch.g, sizeof batch.g);
-  set_mid_gradients(G);
-  for (int b = 0; b < 10; ++b)
-    for (int a = 0; a <= b; ++a) {
-      const GradientProduct& product = gradient_products<10>[static_cast<std::size_t>(16 * a + b)];
-      Tensor<Lanes> D;
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) {
-          Lanes sum = product.first * (G[a][i] * G[b][j]);
-          for (std::size_t n = 0; n < static_cast<std::size_t>(product.count); ++n)
-            sum += product.second * (G[product.pairs[n][0]][i] * G[product.pairs[n][1]][j]);
-          D(i, j) = batch.shear * sum;
-        }
-      Lanes* block = K.block[packed(b, a)];
-      for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) block[3 * i + j] = D(j, i) + batch.ratio * D(i, j);
-      for (int i = 0; i < 3; ++i) block[4 * i] += trace(D);
-    }
+StraightHooke hooke_of(const RotationBatch& batch) {
+  StraightHooke hooke{.inverse = {}, .shear = batch.shear, .ratio = batch.ratio};
+  std::memcpy(hooke.inverse, batch.g[1], sizeof hooke.inverse);
+  return hooke;
 }
 
 /// The stiffness at rest; `room` is used where it has to be made.
 const RestStiffness& stiffness_of(const RotationBatch& batch, RestStiffness& room) {
   if (!batch.kept.empty()) return batch.kept.front();
-  make_stiffness(batch, room);
+  make_stiffness(hooke_of(batch), room.block);
   return room;
 }
 
@@ -93,37 +75,6 @@ Lanes apply_stiffness(const RestStiffness& stiffness, const Displacements& d, Fo
     }
   Lanes energy{};
   for (int a = 0; a < 10; ++a) energy += 0.5 * inner<3>(d[a], q[a]);
-  return energy;
-}
-
-/// The same for straight elements of one law: the stresses at the quadrature points cost less than their stiffness.
-Lanes apply_hooke(const RotationBatch& batch, const Lanes (&d)[10][3], Lanes (&q)[10][3]) {
-  static const auto points = stiffness_rule<3, 10>();
-  static const auto barycentric = [] {
-    std::array<Barycentric<3>, 4> L;
-    for (std::size_t p = 0; p < 4; ++p) L[p] = Tetrahedron<10>::barycentric(points[p].xi);
-    return L;
-  }();
-  const Lanes* inverse = batch.g[1];  // dL_1/dX, dL_2/dX, dL_3/dX
-  NodeValues<3, 10> values;
-  std::memcpy(values.u, d, sizeof d);
-  const Slopes<3, 10> moved = slopes(values);
-  PointWork<3> work[4];
-  Lanes energy{};
-  for (std::size_t p = 0; p < 4; ++p) {
-    Gradients H;
-    displacement_gradient<3, 10>(moved, inverse, barycentric[p], H);
-    const Tensor<Lanes> e = sym(H);
-    Tensor<Lanes> stress;  // over mu
-    for (int k = 0; k < 9; ++k) stress.c[k] = 2.0 * e.c[k];
-    for (int i = 0; i < 3; ++i) stress(i, i) += batch.ratio * trace(e);
-    const Lanes weight = 6 * points[p].weight * batch.shear;
-    work[p] = work_at<3>(stress, weight, inverse);
-    energy += 0.5 * weight * contract(stress, e);
-  }
-  SimplexResult<3, 10> result;
-  set_forces(work, barycentric, result);
-  std::memcpy(q, result.force, sizeof q);
   return energy;
 }
 
@@ -312,6 +263,7 @@ void end_step(const Lanes (&u)[10][3], RotationBatch& batch) {
 
 RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result) {
   RotationState state;
+  state.energy = Lanes{};
   Tensor<Lanes> F{};
   for (int i = 0; i < 3; ++i) {
     for (int a = 0; a < 4; ++a)
@@ -339,8 +291,15 @@ RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10]
     transposed_times(state.R, x, state.d[a]);
     for (int i = 0; i < 3; ++i) state.d[a][i] -= batch.X[a][i];
   }
-  state.energy =
-      batch.kept.empty() ? apply_hooke(batch, state.d, state.q) : apply_stiffness(batch.kept.front(), state.d, state.q);
+  if (batch.kept.empty()) {
+    NodeValues<3, 10> d;
+    std::memcpy(d.u, state.d, sizeof d.u);
+    apply(hooke_of(batch), d, result);
+    std::memcpy(state.q, result.force, sizeof state.q);
+    for (int a = 0; a < 10; ++a) state.energy += 0.5 * inner<3>(state.d[a], state.q[a]);
+  } else {
+    state.energy = apply_stiffness(batch.kept.front(), state.d, state.q);
+  }
   for (const RotationHistory& history : batch.history) relax(history, state);
   for (int a = 0; a < 10; ++a) {
     Vector3 moment;
@@ -374,11 +333,17 @@ void turn(const Tensor<Lanes>& R, const Lanes (&H)[55][9], SimplexResult<3, 10>&
 
 }  // namespace
 
+StraightHooke turned_hooke(const RotationBatch& batch, const RotationState& state) {
+  StraightHooke turned = hooke_of(batch).turned(state.R);
+  turned.shear *= factor_of(batch);
+  return turned;
+}
+
 void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact,
                       SimplexResult<3, 10>& result) {
+  if (!exact && batch.kept.empty()) return make_stiffness(turned_hooke(batch, state), result.block);
   RestStiffness room;
   const RestStiffness& K = stiffness_of(batch, room);
-  if (!exact && batch.history.empty()) return turn(state.R, K.block, result);
   const Lanes factor = factor_of(batch);
   Lanes H[55][9];
   for (int k = 0; k < 55; ++k)

@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "solver/elements/simplex_elements.hpp"
+#include "solver/elements/straight_hooke.hpp"
 
 namespace msml::fe {
 
@@ -62,6 +63,9 @@ void end_step(const Lanes (&u)[10][3], RotationBatch& batch);
 
 /// Forces of eight elements displaced by u into result.force (overwritten).
 RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result);
+
+/// What R K R^T of straight elements of one law is made of, with what relaxation leaves.
+StraightHooke turned_hooke(const RotationBatch& batch, const RotationState& state);
 
 /// Their stiffness into result.block (overwritten): the Hessian of the energy, or R K R^T.
 void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact, SimplexResult<3, 10>& result);

@@ -11,9 +11,10 @@ namespace msml::fe {
 namespace {
 
 /// q = A p at free unknowns, 0 at fixed ones; returns p . q.
-double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, Vector& q) {
+double multiply_free(const SystemMatrix& A, const Mask& fixed, const Vector& p, Vector& q) {
+  if (!A.numbers) A.products->multiply(p, q);
   return sum_pieces<short_piece>(p.size(), [&](long first, long last) {
-    multiply(A, static_cast<int>(first / 3), static_cast<int>(last / 3), p, q);
+    if (A.numbers) multiply(*A.numbers, static_cast<int>(first / 3), static_cast<int>(last / 3), p, q);
     for (long k = first; k < last; ++k)
       if (fixed[static_cast<std::size_t>(k)]) q[k] = 0;
     return p.segment(first, last - first).dot(q.segment(first, last - first));
@@ -22,7 +23,7 @@ double multiply_free(const BlockMatrix& A, const Mask& fixed, const Vector& p, V
 
 }  // namespace
 
-LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
+LinearStatus conjugate_gradients(const SystemMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
                                  long limit, CgSpace& space, Vector& r, Vector& x, long& taken) {
   Vector &z = space.z, &p = space.p, &q = space.q;
   z.resize(r.size());

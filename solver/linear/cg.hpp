@@ -18,7 +18,7 @@ struct CgSpace {
 /// Adds to x until the recurrence of the residual r = b - A x says that it is below target, at most `limit` times
 /// (Hestenes and Stiefel 1952, doi 10.6028/jres.049.044). `taken` counts. not_positive_definite where A shows it;
 /// limit, too, where B alone does: round-off can take it that far where A is nearly singular.
-LinearStatus conjugate_gradients(const BlockMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
+LinearStatus conjugate_gradients(const SystemMatrix& A, const Mask& fixed, const Preconditioning& B, double target,
                                  long limit, CgSpace& space, Vector& r, Vector& x, long& taken);
 
 }  // namespace msml::fe

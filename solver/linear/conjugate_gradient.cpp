@@ -41,7 +41,7 @@ class ConjugateGradient final : public LinearSystem {
     Vector b = right;
     zero_fixed(fixed_, b);
     Vector r;
-    guesses_.start(*matrix_, fixed_, b, r, x);
+    guesses_.start({matrix_}, fixed_, b, r, x);
     const double target = tolerance * std::sqrt(dot(b, b));
     long limit = std::clamp<long>(10 * b.size(), 1000, 50000);
     double size = std::sqrt(dot(r, r));
@@ -49,7 +49,7 @@ class ConjugateGradient final : public LinearSystem {
     while (size > target) {
       long taken = 0;
       const auto prepare = [this](const Vector& residual, double, Vector& z) { precondition(residual, z); };
-      const LinearStatus status = conjugate_gradients(*matrix_, fixed_, prepare, target, limit, space_, r, x, taken);
+      const LinearStatus status = conjugate_gradients({matrix_}, fixed_, prepare, target, limit, space_, r, x, taken);
       limit -= taken, iterations += taken;
       multiply(*matrix_, x, r);
       r = b - r;

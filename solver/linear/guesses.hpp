@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Where iterative solutions start.
 #pragma once
-#include <array>
 #include <vector>
 
 #include "solver/linear/linear_system.hpp"
+#include "solver/linear/products.hpp"
 
 namespace msml::fe {
 
@@ -19,14 +19,13 @@ class Guesses {
   void expect(const Vector& likely) { likely_ = likely; }
   /// x = the sum of multiples of the expected vector and the solutions kept that is nearest to the solution of A x = b
   /// in the norm of A, r = b - A x; both 0 at fixed unknowns, as b is. Zero where nothing was expected.
-  void start(const BlockMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x);
+  void start(const SystemMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x);
   /// The solution of the system that start() was called for: kept if something was expected of it.
   void keep(const Vector& x);
   std::size_t bytes() const { return (span_.size() + image_.size()) * sizeof(Group) + fe::bytes(likely_); }
 
  private:
-  static constexpr std::size_t most = 8;
-  using Group = std::array<double, most>;  ///< of one unknown: the expected vector, then solutions from new to old
+  using Group = Eight;  ///< of one unknown: the expected vector, then solutions from new to old
 
   Vector likely_;
   std::vector<Group> span_, image_;  ///< and A times these

@@ -81,9 +81,16 @@ class WithFallback final : public LinearSystem {
   void expect(const Vector& solution) override { active_->expect(solution); }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
-    matrix_ = &A;
+    matrix_ = {&A};
     fixed_ = fixed;
     return active_->factor(A, fixed);
+  }
+
+  bool take(const Products& A, const Mask& fixed) override {
+    if (!active_->take(A, fixed)) return false;
+    matrix_ = {.products = &A};
+    fixed_ = fixed;
+    return true;
   }
 
   LinearStatus solve(const Vector& b, double tolerance, Vector& x) override {
@@ -92,7 +99,7 @@ class WithFallback final : public LinearSystem {
     iterations += active_->iterations - before;
     if (status != LinearStatus::limit || gave_up) return status;
     auto direct = make_cholesky(settings_.threads, available_memory(), settings_.pulse);
-    status = direct->factor(*matrix_, fixed_);
+    status = direct->factor(matrix_.in_numbers(), fixed_);
     if (status != LinearStatus::done) return status;  // which was not the fault of conjugate gradients
     gave_up = true;
     active_ = std::move(direct);
@@ -106,7 +113,7 @@ class WithFallback final : public LinearSystem {
  private:
   Settings settings_;
   std::unique_ptr<LinearSystem> active_;
-  const BlockMatrix* matrix_ = nullptr;
+  SystemMatrix matrix_;
   Mask fixed_;
 };
 

@@ -8,6 +8,7 @@
 #include "solver/block_matrix.hpp"
 #include "solver/linear/available_memory.hpp"
 #include "solver/linear/node_geometry.hpp"
+#include "solver/linear/products.hpp"
 #include "solver/model.hpp"
 
 namespace msml::fe {
@@ -36,6 +37,9 @@ class LinearSystem {
   /// Takes the matrix; must be called before solve and again when the values change. Analyses the pattern when the mask
   /// differs from the one before. The matrix must outlive the calls of solve.
   virtual LinearStatus factor(const BlockMatrix& A, const Mask& fixed) = 0;
+  /// Takes a matrix without numbers in the place of factor(), with the same duties; false where it is of no use, for
+  /// instance as nothing was made of an earlier matrix that serves for this one.
+  virtual bool take(const Products& /*A*/, const Mask& /*fixed*/) { return false; }
   /// x at free unknowns so that |b - A x| <= tolerance |b| there; 0 at the others.
   virtual LinearStatus solve(const Vector& b, double tolerance, Vector& x) = 0;
   /// The displacement (3 per node) that the next matrix belongs to; a help to solvers that keep what they made of an

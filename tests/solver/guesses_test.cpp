@@ -38,14 +38,14 @@ struct Problem {
   void keep(const Vector& x) {
     Vector r, unused;
     guesses.expect(Vector::Zero(x.size()));
-    guesses.start(A, fixed, image(x), r, unused);
+    guesses.start({&A}, fixed, image(x), r, unused);
     guesses.keep(x);
   }
   /// |b - A x| / |b| where a solution starts.
   double left(const Vector& expected, const Vector& b, double round_off = 1e-12) {
     Vector r, x;
     guesses.expect(expected);
-    guesses.start(A, fixed, b, r, x);
+    guesses.start({&A}, fixed, b, r, x);
     EXPECT_LT((b - image(x) - r).norm(), round_off * b.norm());
     return r.norm() / b.norm();
   }
@@ -76,7 +76,7 @@ TEST(Guesses, AreNearestInTheNormOfTheMatrix) {
   beam.keep(a);
   Vector r, start;
   beam.guesses.expect(likely);
-  beam.guesses.start(beam.A, beam.fixed, b, r, start);
+  beam.guesses.start({&beam.A}, beam.fixed, b, r, start);
   // What is left is orthogonal to both.
   EXPECT_LT(std::abs(r.dot(a)), 1e-12 * r.norm() * a.norm());
   EXPECT_LT(std::abs(r.dot(likely)), 1e-12 * r.norm() * likely.norm());
@@ -105,7 +105,7 @@ TEST(Guesses, ServeOnlyWhereSomethingIsExpected) {
   const Vector x = beam.vector(), b = beam.image(x);
   beam.keep(x);
   Vector r, start;
-  beam.guesses.start(beam.A, beam.fixed, b, r, start);
+  beam.guesses.start({&beam.A}, beam.fixed, b, r, start);
   EXPECT_EQ(start.norm(), 0);
   EXPECT_EQ(r, b);
 }

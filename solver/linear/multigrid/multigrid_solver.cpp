@@ -26,7 +26,8 @@ class MultigridSolver final : public LinearSystem {
   void expect(const Vector& solution) override { guesses_.expect(solution); }
 
   LinearStatus factor(const BlockMatrix& A, const Mask& fixed) override {
-    matrix_ = &A;
+    matrix_ = {&A};
+    pattern_ = A.pattern;
     if (usable_ && !stale_ && fixed == fixed_) {
       turn();
       return LinearStatus::done;
@@ -35,10 +36,17 @@ class MultigridSolver final : public LinearSystem {
     return set_up();
   }
 
+  bool take(const Products& A, const Mask& fixed) override {
+    if (!usable_ || stale_ || fixed != fixed_) return false;
+    matrix_ = {.products = &A};
+    turn();
+    return true;
+  }
+
   LinearStatus solve(const Vector& right, double tolerance, Vector& x) override {
     b_ = right;
     zero_fixed(fixed_, b_);
-    guesses_.start(*matrix_, fixed_, b_, r_, x);
+    guesses_.start(matrix_, fixed_, b_, r_, x);
     const double target = tolerance * std::sqrt(dot(b_, b_));
     double size = std::sqrt(dot(r_, r_)), before = std::numeric_limits<double>::infinity();
     if (size <= target) size = measure(x);  // the difference of large multiples drifts too
@@ -48,7 +56,7 @@ class MultigridSolver final : public LinearSystem {
       const long limit = judged ? static_cast<long>(2 * usual_ * decades) + 10 : limit_fresh;
       long taken = 0;
       const LinearStatus status = conjugate_gradients(
-          *matrix_, fixed_, [this](const Vector& r, double length, Vector& z) { precondition(r, length, z); }, target,
+          matrix_, fixed_, [this](const Vector& r, double length, Vector& z) { precondition(r, length, z); }, target,
           limit, space_, r_, x, taken);
       iterations += taken;
       if (fresh_ && usual_ == 0 && status == LinearStatus::done && decades >= 2)
@@ -91,7 +99,7 @@ class MultigridSolver final : public LinearSystem {
  private:
   /// The norm of the true residual, from which recurrences drift.
   double measure(const Vector& x) {
-    multiply(*matrix_, x, r_);
+    multiply(matrix_, x, r_);
     r_ = b_ - r_;
     zero_fixed(fixed_, r_);
     return std::sqrt(dot(r_, r_));
@@ -99,15 +107,16 @@ class MultigridSolver final : public LinearSystem {
 
   /// Norm of the residual that round-off in A x alone can leave: eps |A| |x| (Higham 2002, section 3.5). No method does
   /// better.
-  double round_off(const Vector& x) const {
-    const Pattern& pattern = *matrix_->pattern;
+  double round_off(const Vector& x) {
+    const BlockMatrix& A = matrix_.in_numbers();
+    const Pattern& pattern = *A.pattern;
     Vector bound(x.size());
     for_rows(pattern.nodes(), 512, [&](int r) {
       double sum[3] = {};
       for (int p = pattern.offsets[static_cast<std::size_t>(r)]; p < pattern.offsets[static_cast<std::size_t>(r) + 1];
            ++p)
         for (std::size_t k = 0; k < 9; ++k)
-          sum[k / 3] += std::abs(matrix_->values[9 * static_cast<std::size_t>(p) + k] *
+          sum[k / 3] += std::abs(A.values[9 * static_cast<std::size_t>(p) + k] *
                                  x[3 * pattern.columns[static_cast<std::size_t>(p)] + static_cast<int>(k % 3)]);
       for (int i = 0; i < 3; ++i) bound[3 * r + i] = sum[i];
     });
@@ -117,7 +126,7 @@ class MultigridSolver final : public LinearSystem {
 
   LinearStatus set_up() {
     usable_ = stale_ = false;
-    const LinearStatus status = grids_.set(*matrix_, fixed_);
+    const LinearStatus status = grids_.set(matrix_.in_numbers(), fixed_);
     if (status != LinearStatus::done) return status;
     reference_ = geometry_.positions;
     if (displacement_.size() == reference_.size()) reference_ += displacement_;
@@ -131,7 +140,7 @@ class MultigridSolver final : public LinearSystem {
     fresh_ = false;
     rotations_.clear();
     if (displacement_.size() != reference_.size()) return;
-    node_rotations(*matrix_->pattern, reference_, Vector(geometry_.positions + displacement_), fixed_, geometry_.ends,
+    node_rotations(*pattern_, reference_, Vector(geometry_.positions + displacement_), fixed_, geometry_.ends,
                    rotations_);
   }
 
@@ -166,7 +175,8 @@ class MultigridSolver final : public LinearSystem {
   NodeGeometry geometry_;
   Multigrid grids_;
   std::function<void()> pulse_;
-  const BlockMatrix* matrix_ = nullptr;
+  SystemMatrix matrix_;
+  PatternPtr pattern_;
   Mask fixed_;
   bool usable_ = false, fresh_ = false, stale_ = false;
   double usual_ = 0;  ///< iterations for a tenth of the residual with grids of the matrix itself; 0: not known
