@@ -47,7 +47,7 @@ def beam_rows(quick):
              Row("static", "tet10", 8, solver="direct"), Row("static", "tet10", 8, 0.49, wanted="DOLFINx 2.22"),
              Row("static", "tet10", 12, wanted="DOLFINx 2.5"), Row("static", "tet10", 12, 0.49),
              Row("static", "tet10", 20, runs=3, needs_gb=4), Row("static", "tet10", 20, 0.49, runs=1, needs_gb=4),
-             Row("static", "tet10", 35, runs=1, needs_gb=18)]
+             Row("static", "tet10", 35, runs=1, needs_gb=18), Row("static", "tet10", 35, 0.49, runs=1, needs_gb=18)]
     rows += [Row("neo", "tet10", 4), Row("neo", "tet10", 4, 0.49), Row("neo", "tet10", 8, wanted="DOLFINx 5")]
     return rows
 

@@ -70,8 +70,10 @@ class MultigridSolver final : public LinearSystem {
       }
       size = measure(x);  // go on from there where needed
       if (!std::isfinite(size)) return LinearStatus::not_positive_definite;
-      if (status == LinearStatus::done && size > target && size > 0.5 * before)
-        return size <= round_off(x) ? LinearStatus::done : LinearStatus::limit;
+      if (status == LinearStatus::done && size > target && std::isfinite(before)) {  // once more did not help
+        if (size <= round_off(x)) break;
+        if (size > 0.5 * before) return LinearStatus::limit;
+      }
       before = size;
     }
     guesses_.keep(x);
