@@ -43,6 +43,9 @@ SimplexElements<dimension, nodes, count>::SimplexElements(const Model& model)
   remembers_ = remembers(batches_);
   for (const Want want : {Want::tangent, Want::single_tangent, Want::definite_tangent})
     rotated_[static_cast<std::size_t>(want)] = all_rotated(want);
+  if constexpr (keeps)
+    if (rotated_[static_cast<std::size_t>(Want::single_tangent)])
+      kept_ = std::make_unique<KeptHooke<4>>(*this, batches_, colours_);
 }
 
 template <int dimension, int nodes, int count>
@@ -204,9 +207,10 @@ void SimplexElements<dimension, nodes, count>::add_tangent(const Batch& batch, c
 
 template <int dimension, int nodes, int count>
 bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
-  return dimension == 3 && nodes == 4 && !remembers_ && RotatedRows::serves(numbering_.elements.size()) &&
-         std::all_of(batches_.begin(), batches_.end(),
-                     [&](const Batch& batch) { return batch.laws.laws.front()->evaluate_rotated(want, {}, {}); });
+  const bool rows = dimension == 3 && nodes == 4 && RotatedRows::serves(numbering_.elements.size());
+  return (rows || keeps) && !remembers_ && std::all_of(batches_.begin(), batches_.end(), [&](const Batch& batch) {
+           return batch.laws.laws.front()->evaluate_rotated(want, {}, {});
+         });
 }
 
 template <int dimension, int nodes, int count>
@@ -229,10 +233,30 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
 }
 
 template <int dimension, int nodes, int count>
+Assembled SimplexElements<dimension, nodes, count>::add_kept(const Vector& u, Vector& force) const {
+  kept_->begin(u);
+  const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
+    laws.laws.front()->evaluate_rotated(Want::single_tangent, gradients, responses);
+  };
+  const auto add = [&](const Batch& batch, const Gradients* H, const RotatedResponse* at, Notes& notes) {
+    add_force(batch, H, at, force, notes);
+    if constexpr (keeps)
+      for (int q = 0; q < count; ++q) {
+        HookePoint point{.inverse = {}, .weight = batch.points[q].weight * at[q].mu, .ratio = at[q].lambda / at[q].mu};
+        std::copy_n(batch.inverse(q), 9, point.inverse);
+        kept_->at(static_cast<std::size_t>(&batch - batches_.data()))[static_cast<std::size_t>(q)] =
+            point.turned(at[q].R);
+      }
+  };
+  return add_strips<RotatedResponse>(u, false, evaluate, add);
+}
+
+template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u, Want want, Vector& force,
                                                                  BlockMatrix* matrix) const {
   matrices_ += matrix != nullptr;
-  if (matrix && matrices_ > matrices_before_rows && rotated_[static_cast<std::size_t>(want)])
+  if (kept_ && want == Want::single_tangent && !matrix) return add_kept(u, force);
+  if (nodes == 4 && matrix && matrices_ > matrices_before_rows && rotated_[static_cast<std::size_t>(want)])
     return add_rotated(u, want, force, *matrix);
   if (matrix) matrix->set_zero();
   const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
@@ -289,7 +313,8 @@ void SimplexElements<dimension, nodes, count>::visit_points(const Vector& u, con
 template <int dimension, int nodes, int count>
 std::size_t SimplexElements<dimension, nodes, count>::bytes() const {
   std::size_t sum = numbering_.bytes() + batches_.size() * sizeof(Batch) +
-                    block_positions_.size() * sizeof block_positions_[0] + (rows_ ? rows_->bytes() : 0);
+                    block_positions_.size() * sizeof block_positions_[0] + (rows_ ? rows_->bytes() : 0) +
+                    (kept_ ? kept_->bytes() : 0);
   for (const Batch& batch : batches_) sum += batch.laws.bytes() + batch.history.bytes();
   return sum;
 }

@@ -3,36 +3,13 @@
 #pragma once
 #include "solver/elements/assembly.hpp"
 #include "solver/elements/chunks.hpp"
+#include "solver/elements/kept_hooke.hpp"
 #include "solver/elements/mass.hpp"
-#include "solver/elements/prony_history.hpp"
-#include "solver/elements/region_laws.hpp"
 #include "solver/elements/rotated_rows.hpp"
 #include "solver/elements/shapes.hpp"
-#include "solver/elements/simplex_kernels.hpp"
+#include "solver/elements/simplex_batch.hpp"
 
 namespace msml::fe {
-
-/// Eight elements of one region side by side. Unused lanes of the last batch repeat an element with weight 0.
-template <int dimension, int nodes, int rule_points>
-struct SimplexBatch {
-  struct Point {
-    Lanes inverse[dimension * dimension];  ///< dxi/dX, row by row
-    Lanes weight;                          ///< reference volume of the point
-  };
-  using Positions = std::array<int, nodes * nodes>;  ///< of block (a, b) of an element in the pattern, at a * nodes + b
-  // First what forces need, with nothing else in between.
-  int region = 0, count = 0;
-  int first = 0;             ///< place in Numbering::elements of lane 0; the lanes follow
-  bool straight = true;      ///< dxi/dX is the same at all points
-  int node[lanes][nodes];    ///< numbered nodes
-  const Law* law = nullptr;  ///< of all points; null where there are several
-  Point points[rule_points];
-  const Lanes* inverse(int q) const { return points[straight ? 0 : q].inverse; }
-  const Positions* position = nullptr;  ///< of each lane
-  BatchLaws laws;
-  PronyHistory history;      ///< empty where elastic
-  double stored_beside = 0;  ///< see Elements::stored_beside
-};
 
 /// Lines lie along x (uniaxial strain: F = diag(F_11, 1, 1)), triangles in a plane of constant z. The gradient has
 /// `dimension` rows and columns, the rest is zero (plane strain) or the law's own (plane stress).
@@ -49,6 +26,8 @@ class SimplexElements final : public Elements {
   std::size_t bytes() const override;
   std::shared_ptr<const std::vector<double>> history_energy() const override;
   double stored_beside() const override;
+  /// Of quadratic tetrahedra whose tangents are those of RotatedResponse.
+  const KeptTangent* kept_tangent() const override { return kept_.get(); }
   const Numbering& numbering() const override { return numbering_; }
   const PatternPtr& pattern() const override { return pattern_; }
 
@@ -60,6 +39,7 @@ class SimplexElements final : public Elements {
   void shape_gradients(const Batch& batch, int q, ShapeGradients& g) const;
 
  private:
+  static constexpr bool keeps = dimension == 3 && nodes == 10 && count == 4;  ///< tangents, see KeptHooke
   static constexpr int strip_batches = std::max(1, 8 / count), strip_points = strip_batches * count;
   const Points& positions() const { return numbering_.mesh->points; }  ///< at rest
   static Rule<dimension> rule();
@@ -76,6 +56,7 @@ class SimplexElements final : public Elements {
   void add_tangent(const Batch& batch, const Response* response, BlockMatrix& matrix) const;
   bool all_rotated(Want want) const;
   Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
+  Assembled add_kept(const Vector& u, Vector& force) const;
 
   Numbering numbering_;
   PatternPtr pattern_;
@@ -88,6 +69,7 @@ class SimplexElements final : public Elements {
   std::vector<std::vector<Chunk>> colours_;
   mutable int matrices_ = 0;                 ///< asked for so far
   mutable std::optional<RotatedRows> rows_;  ///< of linear tetrahedra with such tangents; made for the third matrix
+  std::unique_ptr<KeptHooke<4>> kept_;       ///< null where none is kept
   std::array<ReferenceGradients<dimension, nodes>, count> reference_gradients_;
   std::array<Barycentric<dimension>, count> barycentric_;  ///< of the quadrature points
 };

@@ -6,16 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
-#include "solver/elements/node_parts.hpp"
 #include "solver/elements/simplex_elements.hpp"
 #include "solver/elements/single_rotation_batch.hpp"
 
 namespace msml::fe {
 namespace {
 
-class SingleRotationElements final : public Elements, public KeptTangent {
+class SingleRotationElements final : public Elements {
  public:
   explicit SingleRotationElements(const Model& model) : standard_(model) {
     const auto& batches = standard_.batches();
@@ -33,12 +31,13 @@ class SingleRotationElements final : public Elements, public KeptTangent {
       move_corner(batches_[b]);
       remember(model, batches[b], batches_[b]);
     });
-    straight_ = std::ranges::all_of(batches_, [](const RotationBatch& batch) { return batch.kept.empty(); });
+    if (std::ranges::all_of(batches_, [](const RotationBatch& batch) { return batch.kept.empty(); }))
+      kept_.emplace(*this, batches, standard_.colours());
   }
 
   Assembled add_internal(const Vector& u, Want want, Vector& force, BlockMatrix* matrix) const override {
-    const bool keep = straight_ && want == Want::single_tangent && matrix == nullptr;
-    if (keep) turned_.resize(batches_.size());
+    const bool keep = kept_ && want == Want::single_tangent && matrix == nullptr;
+    if (keep) kept_->begin(u);
     if (matrix) matrix->set_zero();
     return add_chunks(standard_.colours(), [&](const Chunk& chunk) {
       Notes notes;
@@ -48,42 +47,7 @@ class SingleRotationElements final : public Elements, public KeptTangent {
     });
   }
 
-  const KeptTangent* kept_tangent() const override { return straight_ ? this : nullptr; }
-  /// Elements write what nodes gather: two loops in parallel, where colours would be one each.
-  void multiply(double s, const ScalarMatrix& M, const Vector& x, Vector& y) const override {
-    if (!parts_) parts_.emplace(numbering());
-    y.resize(x.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batches_.size(), 16), [&](const auto& range) {
-      for (std::size_t b = range.begin(); b < range.end(); ++b) {
-        SimplexResult<3, 10> result;
-        apply(turned_[b], gather_nodes<3, 10>(standard_.batches()[b], x), result);
-        parts_->set(standard_.batches()[b], result.force);
-      }
-    });
-    tbb::parallel_for(tbb::blocked_range<int>(0, numbering().nodes(), 128), [&](const auto& range) {
-      fe::multiply(M, range.begin(), range.end(), x, y, s);
-      parts_->add(range.begin(), range.end(), y);
-    });
-  }
-  /// One element after the other, as eight vectors fill the lanes.
-  void multiply(double s, const ScalarMatrix& M, const std::vector<Eight>& X, std::vector<Eight>& Y) const override {
-    fe::multiply(M, X, Y, s);
-    for_batches(standard_.colours(), [&](std::size_t b) {
-      const Batch& batch = standard_.batches()[b];
-      for (int lane = 0; lane < batch.count; ++lane) add_eight(turned_[b].lane(lane), batch.node[lane], X, Y);
-    });
-  }
-  void assemble(BlockMatrix& matrix) const override {
-    matrix.set_zero();
-    for_batches(standard_.colours(), [&](std::size_t b) {
-      const Batch& batch = standard_.batches()[b];
-      fetch_blocks(batch, matrix);
-      SimplexResult<3, 10> result;
-      make_stiffness(turned_[b], result.block);
-      scatter_stiffness<3, 10>(batch, result, matrix);
-    });
-  }
-
+  const KeptTangent* kept_tangent() const override { return kept_ ? &*kept_ : nullptr; }
   void add_mass(bool lumped, ScalarMatrix& mass) const override { standard_.add_mass(lumped, mass); }
   void visit_points(const Vector& u, const PointsVisitor& visit) const override { standard_.visit_points(u, visit); }
   void begin_step(double dt) override {
@@ -103,7 +67,7 @@ class SingleRotationElements final : public Elements, public KeptTangent {
     return sum;
   }
   std::size_t bytes() const override {
-    std::size_t sum = standard_.bytes() + turned_.size() * sizeof(StraightHooke) + (parts_ ? parts_->bytes() : 0);
+    std::size_t sum = standard_.bytes() + (kept_ ? kept_->bytes() : 0);
     for (const RotationBatch& batch : batches_) sum += batch.bytes();
     return sum;
   }
@@ -137,21 +101,6 @@ class SingleRotationElements final : public Elements, public KeptTangent {
         stored_beside_[b] += history.stored[lane] - state.energy[lane];
   }
 
-  static void add_eight(const StraightHooke& hooke, const int (&node)[10], const std::vector<Eight>& X,
-                        std::vector<Eight>& Y) {
-    NodeValues<3, 10> x;
-    SimplexResult<3, 10> result;
-    for (int a = 0; a < 10; ++a) std::memcpy(x.u[a], &X[3 * static_cast<std::size_t>(node[a])], sizeof x.u[a]);
-    apply(hooke, x, result);
-    for (int a = 0; a < 10; ++a) {
-      Eight* out = &Y[3 * static_cast<std::size_t>(node[a])];
-      Lanes sum[3];
-      std::memcpy(sum, out, sizeof sum);
-      for (int i = 0; i < 3; ++i) sum[i] += result.force[a][i];
-      std::memcpy(out, sum, sizeof sum);
-    }
-  }
-
   /// The tangent goes to a matrix, is kept, or neither.
   void add_batch(std::size_t b, const Vector& u, Want want, Vector& force, BlockMatrix* matrix, bool keep,
                  Notes& notes) const {
@@ -164,7 +113,7 @@ class SingleRotationElements final : public Elements, public KeptTangent {
     const RotationState state = evaluate_rotation(own, moved, result);
     notes.add(state.energy, state.J, batch.first);
     scatter_force<3, 10>(batch, result, force);
-    if (keep) turned_[b] = turned_hooke(own, state);
+    if (keep) kept_->at(b) = {turned_hooke(own, state)};
     if (!matrix) return;
     rotation_tangent(own, state, want == Want::tangent && own.exact, result);
     scatter_stiffness<3, 10>(batch, result, *matrix);
@@ -172,10 +121,8 @@ class SingleRotationElements final : public Elements, public KeptTangent {
 
   SimplexElements<3, 10> standard_;
   std::vector<RotationBatch> batches_;
-  std::vector<double> stored_beside_;           ///< of each batch
-  bool straight_ = false;                       ///< no batch keeps its stiffness
-  mutable std::optional<NodeParts<10>> parts_;  ///< of products
-  mutable std::vector<StraightHooke> turned_;   ///< of each batch, the tangent that is kept
+  std::vector<double> stored_beside_;         ///< of each batch
+  mutable std::optional<KeptHooke<1>> kept_;  ///< null unless all elements are straight
 };
 
 }  // namespace

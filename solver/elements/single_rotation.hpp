@@ -16,9 +16,8 @@ namespace msml::fe {
 /// g_a the gradients of the corners' linear shape functions (zero at mid nodes), U = R^T F of the corners; so a free
 /// element keeps its angular momentum, which f = R q alone would not. Tangents: `tangent` is the Hessian of W
 /// (symmetric); `single_tangent`, `definite_tangent` and a law with tangent = rotated take R K R^T (Hauth and Strasser
-/// 2004; Mueller and Gross 2004 for one rotation per element). Straight elements can keep it as turned gradients, see
-/// KeptTangent: products with it cost less than those with a matrix, and a time step need not make one. Results are
-/// measured with the rotation of each point.
+/// 2004; Mueller and Gross 2004 for one rotation per element). Straight elements keep it for products, see KeptHooke.
+/// Results are measured with the rotation of each point.
 /// With a history (see PronyHistory) q = K d relaxes as it turns with the element, by the series at its middle: W of a
 /// step is factor d^T K d / 2 + fixed . d, and all else is the same.
 /// Where D is singular the polar rotation is not unique: D^-1 is bounded there. The model is checked: tet10 and

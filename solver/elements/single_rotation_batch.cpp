@@ -46,10 +46,11 @@ Tensor<Lanes> inverse_of(const Tensor<Lanes>& D, const Tensor<Lanes>& U) {
   return inverse;
 }
 
-StraightHooke hooke_of(const RotationBatch& batch) {
-  StraightHooke hooke{.inverse = {}, .shear = batch.shear, .ratio = batch.ratio};
-  std::memcpy(hooke.inverse, batch.g[1], sizeof hooke.inverse);
-  return hooke;
+/// Of straight elements of one law, the same at all points, whose weights are equal.
+HookePoint hooke_of(const RotationBatch& batch) {
+  HookePoint point{.inverse = {}, .weight = 0.25 * batch.shear, .ratio = batch.ratio};
+  std::memcpy(point.inverse, batch.g[1], sizeof point.inverse);
+  return point;
 }
 
 /// The stiffness at rest; `room` is used where it has to be made.
@@ -294,7 +295,7 @@ RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10]
   if (batch.kept.empty()) {
     NodeValues<3, 10> d;
     std::memcpy(d.u, state.d, sizeof d.u);
-    apply(hooke_of(batch), d, result);
+    apply(std::array{hooke_of(batch)}, d, result);
     std::memcpy(state.q, result.force, sizeof state.q);
     for (int a = 0; a < 10; ++a) state.energy += 0.5 * inner<3>(state.d[a], state.q[a]);
   } else {
@@ -333,9 +334,9 @@ void turn(const Tensor<Lanes>& R, const Lanes (&H)[55][9], SimplexResult<3, 10>&
 
 }  // namespace
 
-StraightHooke turned_hooke(const RotationBatch& batch, const RotationState& state) {
-  StraightHooke turned = hooke_of(batch).turned(state.R);
-  turned.shear *= factor_of(batch);
+HookePoint turned_hooke(const RotationBatch& batch, const RotationState& state) {
+  HookePoint turned = hooke_of(batch).turned(state.R);
+  turned.weight *= factor_of(batch);
   return turned;
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <functional>
 
+#include "solver/elements/hooke_points.hpp"
 #include "solver/elements/simplex_elements.hpp"
-#include "solver/elements/straight_hooke.hpp"
 
 namespace msml::fe {
 
@@ -65,7 +65,7 @@ void end_step(const Lanes (&u)[10][3], RotationBatch& batch);
 RotationState evaluate_rotation(const RotationBatch& batch, const Lanes (&u)[10][3], SimplexResult<3, 10>& result);
 
 /// What R K R^T of straight elements of one law is made of, with what relaxation leaves.
-StraightHooke turned_hooke(const RotationBatch& batch, const RotationState& state);
+HookePoint turned_hooke(const RotationBatch& batch, const RotationState& state);
 
 /// Their stiffness into result.block (overwritten): the Hessian of the energy, or R K R^T.
 void rotation_tangent(const RotationBatch& batch, const RotationState& state, bool exact, SimplexResult<3, 10>& result);

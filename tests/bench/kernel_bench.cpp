@@ -31,7 +31,7 @@ constexpr double neo_tangent = 45 * 9 + 45 + 36;               // three products
 constexpr double frame(int nodes) { return nodes == 4 ? 45 + 54 + 25 + 9 + 18 : 4 * (108 + 54 + 25) + 138 + 410; }
 constexpr double stiffness(int nodes) { return 153 * nodes + 54 * nodes * (nodes + 1) / 2.0; }  // with dN/dX
 constexpr double single_force = polar + 20 * 15 + 4 * 40 + frame(10);  // one rotation, there and back; Hooke
-constexpr double single_tangent = 3 * 15;                              // R g
+constexpr double turned = 3 * 15;                                      // R g
 constexpr double product = 4 * (108 + 54 + 12) + 138 + 410;            // of a kept tangent: H, stress and forces
 }  // namespace operations
 
@@ -135,20 +135,23 @@ void step_tangent_by_rows(benchmark::State& state, int n, int threads) {
   count(state, beam.elements, bytes, operations::corotated_stress + operations::frame(4) + 60 + blocks);  // dN/dX
 }
 
-/// The same of quadratic tetrahedra with one rotation, which keep what the tangent is made of.
-void step_tangent_kept(benchmark::State& state, int n, int threads) {
-  Beam beam(CellKind::tet10, n, false, fe::Formulation::single_rotation);
+/// The same of quadratic tetrahedra, which keep what it is made of; with a rotation at each of four points, or one.
+void step_tangent_kept(benchmark::State& state, int n, fe::Formulation formulation, int threads) {
+  const bool single = formulation == fe::Formulation::single_rotation;
+  Beam beam(CellKind::tet10, n, false, formulation);
   repeat(state, threads, [&] {
     beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, nullptr);
     benchmark::DoNotOptimize(beam.force.data());
   });
-  const double bytes = force_bytes(beam) + 8 * (30 + 12) + 8 * 11;  // X and gradients; what is kept
-  count(state, beam.elements, bytes, operations::single_force + operations::single_tangent);
+  const double bytes = force_bytes(beam) + (single ? 8 * (30 + 12 + 11) : 8 * 4 * 11);  // X and gradients; what is kept
+  count(state, beam.elements, bytes,
+        single ? operations::single_force + operations::turned
+               : 4 * (operations::corotated_stress + operations::turned) + operations::frame(10));
 }
 
 /// Products with it, and with the mass: elements write their parts, nodes read them and their row of the mass.
-void product_kept(benchmark::State& state, int n, int threads) {
-  Beam beam(CellKind::tet10, n, false, fe::Formulation::single_rotation);
+void product_kept(benchmark::State& state, int n, fe::Formulation formulation, int threads) {
+  Beam beam(CellKind::tet10, n, false, formulation);
   beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, nullptr);
   const fe::KeptTangent& kept = *beam.equations.elements().kept_tangent();
   fe::Vector y;
@@ -157,12 +160,13 @@ void product_kept(benchmark::State& state, int n, int threads) {
     benchmark::DoNotOptimize(y.data());
   });
   const double blocks = beam.matrix_bytes() / 72 / beam.elements;
-  const double bytes = 8 * 11 + 2 * 4 * 10 + 2 * 320 + 12 * blocks + 64 * beam.nodes_each();
+  const double own = formulation == fe::Formulation::single_rotation ? 8 * 11 : 8 * 4 * 11;
+  const double bytes = own + 2 * 4 * 10 + 2 * 320 + 12 * blocks + 64 * beam.nodes_each();
   count(state, beam.elements, bytes, operations::product + 6 * blocks + 30);
 }
 
-/// The same of quadratic tetrahedra with a rotation at each of four points, as a matrix.
-void step_tangent(benchmark::State& state, int n, int threads) {
+/// The matrix that it stands for, by integration at four points, with forces.
+void four_point_matrix(benchmark::State& state, int n, int threads) {
   Beam beam(CellKind::tet10, n, false);
   repeat(state, threads, [&] {
     beam.equations.elements().add_internal(beam.u, fe::Want::single_tangent, beam.force, &beam.matrix);
@@ -243,9 +247,12 @@ void add_kernels(int scale) {
   for (const int threads : {1, 2}) {
     const int n = 8 / scale;
     add("step tangent tet4", threads, [=](auto& s) { step_tangent_by_rows(s, 2 * n, threads); });
-    add("step tangent tet10", threads, [=](auto& s) { step_tangent(s, n, threads); });
-    add("kept tangent product tet10SR", threads, [=](auto& s) { product_kept(s, n, threads); });
-    add("step tangent tet10SR", threads, [=](auto& s) { step_tangent_kept(s, n, threads); });
+    add("tangent tet10 of four points, for steps", threads, [=](auto& s) { four_point_matrix(s, n, threads); });
+    for (const auto formulation : {fe::Formulation::standard, fe::Formulation::single_rotation}) {
+      const std::string kind = formulation == fe::Formulation::standard ? "tet10" : "tet10SR";
+      add("step tangent " + kind, threads, [=](auto& s) { step_tangent_kept(s, n, formulation, threads); });
+      add("product of step tangent " + kind, threads, [=](auto& s) { product_kept(s, n, formulation, threads); });
+    }
   }
   add("polar decomposition", 1, polar_decomposition);
 }

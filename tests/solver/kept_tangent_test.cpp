@@ -42,36 +42,8 @@ struct Both {
   Assembled found, kept_found;
 };
 
-TEST(KeptTangent, IsTheMatrix) {
-  Both both(two_halves(CellKind::tet10));
-  ASSERT_NE(both.equations.elements().kept_tangent(), nullptr);
-  EXPECT_EQ(both.kept_force, both.force);
-  EXPECT_EQ(both.kept_found.energy, both.found.energy);
-  EXPECT_EQ(both.kept_found.smallest_J_element, both.found.smallest_J_element);
-  both.equations.elements().kept_tangent()->assemble(both.room);
-  EXPECT_EQ(difference(both.matrix, both.room), 0);
-}
-
-// Where edges are curved, be it by 1e-12, elements turn the stiffness that they keep.
-TEST(KeptTangent, IsTheStiffnessAtRestTurned) {
-  const Model straight = two_halves(CellKind::tet10);
-  Model curved = straight;
-  Mesh mesh = *straight.mesh;
-  for (int cell = 0; cell < mesh.cell_count(); ++cell)
-    for (int a = 4; a < 10; ++a) mesh.points(mesh.cell(cell)[a], 2) += 1e-12 * (1 + a);
-  curved.mesh = std::make_shared<const Mesh>(mesh);
-  const Both kept(straight);
-  Equations equations(curved);
-  Vector force = Vector::Zero(kept.u.size());
-  BlockMatrix turned(equations.elements().pattern());
-  equations.elements().add_internal(kept.u, Want::single_tangent, force, &turned);
-  ASSERT_EQ(equations.elements().kept_tangent(), nullptr);
-  EXPECT_LT(difference(turned, kept.matrix), 1e-8);
-}
-
-// Times one vector and times eight, with inertia.
-TEST(KeptTangent, MultipliesAsTheMatrixDoes) {
-  Both both(two_halves(CellKind::tet10));
+/// Times one vector and times eight, with inertia.
+void expect_products(Both& both) {
   add(both.matrix, inertia, both.equations.mass());
   const Eigen::Index size = both.u.size();
   std::vector<Eight> X(static_cast<std::size_t>(size)), Y(X.size());
@@ -92,11 +64,45 @@ TEST(KeptTangent, MultipliesAsTheMatrixDoes) {
   EXPECT_LT(difference(both.matrix, both.products().matrix()), 1e-15);
 }
 
-TEST(KeptTangent, DoesNotDependOnTheNumberOfThreads) {
+/// Quadratic tetrahedra with one rotation each, or one at each point.
+Model halves(Formulation formulation) {
+  Model model = two_halves(CellKind::tet10);
+  model.formulation = formulation;
+  return model;
+}
+
+/// The same with mid nodes that lie off the middles of their edges by up to ten times `off`.
+Model curved(Formulation formulation, double off) {
+  Model model = halves(formulation);
+  Mesh mesh = *model.mesh;
+  for (int cell = 0; cell < mesh.cell_count(); ++cell)
+    for (int a = 4; a < 10; ++a) mesh.points(mesh.cell(cell)[a], 2) += off * (1 + a);
+  model.mesh = std::make_shared<const Mesh>(mesh);
+  return model;
+}
+
+class KeptTangent : public ::testing::TestWithParam<Formulation> {};
+INSTANTIATE_TEST_SUITE_P(All, KeptTangent, ::testing::Values(Formulation::standard, Formulation::single_rotation),
+                         [](const auto& of) { return of.param == Formulation::standard ? "tet10" : "tet10SR"; });
+
+TEST_P(KeptTangent, ComesWithTheForcesOfTheMatrix) {
+  const Both both(halves(GetParam()));
+  ASSERT_NE(both.equations.elements().kept_tangent(), nullptr);
+  EXPECT_LT((both.kept_force - both.force).norm(), 1e-14 * both.force.norm());
+  EXPECT_NEAR(both.kept_found.energy, both.found.energy, 1e-13 * both.found.energy);
+  EXPECT_EQ(both.kept_found.smallest_J_element, both.found.smallest_J_element);
+}
+
+TEST_P(KeptTangent, MultipliesAsTheMatrixDoes) {
+  Both both(halves(GetParam()));
+  expect_products(both);
+}
+
+TEST_P(KeptTangent, DoesNotDependOnTheNumberOfThreads) {
   const auto product = [](int threads) {
     Vector y;
     tbb::task_arena(threads).execute([&] {
-      Both both(two_halves(CellKind::tet10));
+      Both both(halves(GetParam()));
       both.products().multiply(random_vector(both.u.size(), 1), y);
     });
     return y;
@@ -104,22 +110,32 @@ TEST(KeptTangent, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(product(1), product(2));
 }
 
-// In a time step the stiffness is what relaxation leaves of it, here in one half.
-TEST(KeptTangent, RelaxesWithTheLaw) {
-  Model model = two_halves(CellKind::tet10);
-  model.regions[1].prony = {.g = {0.6}, .tau = {0.1}};
-  Both both(model, 0.05), elastic(two_halves(CellKind::tet10));
-  both.equations.elements().kept_tangent()->assemble(both.room);
-  EXPECT_LT(difference(both.matrix, both.room), 1e-15);
-  EXPECT_GT(difference(both.matrix, elastic.matrix), 1e-3);
+// Elements with one rotation turn the stiffness at rest where edges are curved, be it by 1e-11.
+TEST(SingleRotation, KeepsTheStiffnessAtRestTurned) {
+  const Both both(halves(Formulation::single_rotation));
+  Equations equations(curved(Formulation::single_rotation, 1e-12));
+  Vector force = Vector::Zero(both.u.size());
+  BlockMatrix turned(equations.elements().pattern());
+  equations.elements().add_internal(both.u, Want::single_tangent, force, &turned);
+  ASSERT_EQ(equations.elements().kept_tangent(), nullptr);
+  EXPECT_LT(difference(turned, both.matrix), 1e-8);
 }
 
-// One curved edge is enough: its elements keep their stiffness at rest.
-TEST(KeptTangent, IsOfStraightElements) {
+// With a rotation at each point they keep those of curved elements too.
+TEST(CurvedElements, KeepTheirTangents) {
+  Both both(curved(Formulation::standard, 1e-4));
+  expect_products(both);
+}
+
+// In a time step the stiffness is what relaxation leaves of it, here in one half.
+TEST(RelaxingElements, KeepWhatIsLeft) {
   Model model = two_halves(CellKind::tet10);
-  Mesh mesh = *model.mesh;
-  mesh.points(mesh.cell(0)[4], 2) += 1e-4;
-  model.mesh = std::make_shared<const Mesh>(mesh);
+  model.regions[1].prony = {.g = {0.6}, .tau = {0.1}};
+  Both both(model, 0.05);
+  const Both elastic(two_halves(CellKind::tet10));
+  EXPECT_GT(difference(both.matrix, elastic.matrix), 1e-3);
+  expect_products(both);
+  model.formulation = Formulation::standard;
   EXPECT_EQ(Equations(model).elements().kept_tangent(), nullptr);
 }
 
@@ -216,8 +232,8 @@ TEST(Multigrid, AsksProductsForNumbersWhereItsGridsDoNotServe) {
 }
 
 /// Thirty steps under gravity, one linear solve each; the end at x = 0 is pulled along x.
-Model falling_beam(LinearSolver solver) {
-  Model model = two_halves(CellKind::tet10);
+Model falling_beam(Formulation formulation, LinearSolver solver) {
+  Model model = halves(formulation);
   model.settings.integrator = Integrator::implicit_euler;
   model.settings.newton_iterations = 1;
   model.settings.linear_tolerance = 1e-10;
@@ -229,8 +245,10 @@ Model falling_beam(LinearSolver solver) {
   return model;
 }
 
-TEST(StepsWithoutAMatrix, AreThoseWithOne) {
-  const auto run = [](LinearSolver solver) { return solve(falling_beam(solver), [](const State&) { return true; }); };
+TEST_P(KeptTangent, TakesTimeStepsAsAMatrixDoes) {
+  const auto run = [](LinearSolver solver) {
+    return solve(falling_beam(GetParam(), solver), [](const State&) { return true; });
+  };
   const Outcome plain = run(LinearSolver::direct), fast = run(LinearSolver::cg);
   ASSERT_EQ(plain.stop, Stop::converged);
   ASSERT_EQ(fast.stop, Stop::converged);
