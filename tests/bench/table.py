@@ -21,11 +21,12 @@ def relative(value, reference):
 
 
 def line_of(row, result, peer_entries, known, machine):
-    """One line: `unit` is the time of a step or of a solve, `moved_gb` what the machine's triad moves in that time."""
+    """One line: `unit` is the time of a step or of a solve, `moved_gb` what the machine's triad moves in that time with
+    one thread: with two it may move twice as much from one minute to the next, where a virtual machine is moved."""
     line = {name: "" for name in COLUMNS}
     unit = result.get("step", result["answer"])
     line.update(work=row.work, kind=row.kind, n=row.n or "", nu=row.nu if row.n else "", method=row.solver, unit=unit,
-                wanted=row.wanted, runs=result["runs"], total=result["total"], moved_gb=unit * machine["triad_2"])
+                wanted=row.wanted, runs=result["runs"], total=result["total"], moved_gb=unit * machine["triad_1"])
     for name in ("unknowns", "setup", "assembly", "linear", "first", "rest", "worst", "peak_mb", "reported_mb", "solves", "rate"):
         line[name] = result.get(name, "")
     if result.get("solves"):

@@ -66,6 +66,9 @@ class Lines(unittest.TestCase):
         # The faster of CalculiX's two ways is the sparse factorisation with 9.7 s on two threads.
         self.assertAlmostEqual(beam_line(0.5)["CalculiX"], min(9.7 * 29.2 / 40, 8.4 * 14.9 / 20) / 0.5, places=12)
 
+    def test_cost_is_counted_in_the_bandwidth_of_one_thread(self):
+        self.assertEqual(beam_line(0.5)["moved_gb"], 0.5 * 20)
+
     def test_a_run_beside_us_replaces_a_kept_time(self):
         kept = {"peer": "DOLFINx", "seconds": 1.0, "beside": False}
         slow, fast = ({"peer": "DOLFINx", "seconds": s, "beside": True} for s in (3.0, 2.0))
