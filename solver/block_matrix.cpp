@@ -213,7 +213,7 @@ void multiply(const ScalarMatrix& A, const Vector& x, Vector& y, double s) {
 }
 
 void multiply(const ScalarMatrix& A, const std::vector<Eight>& X, std::vector<Eight>& Y, double s) {
-  using Three = Vectors<double __attribute__((vector_size(sizeof(Eight)))), 3>;
+  using Three = Vectors<Wide, 3>;
   for_rows(A.pattern->nodes(), [&](int r) {
     const Three sums = scalar_row<Three>(A, r, s, [&](int node) {
       Three v;

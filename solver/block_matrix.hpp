@@ -10,8 +10,9 @@
 
 namespace msml::fe {
 
-using Vector = Eigen::VectorXd;       ///< 3 numbers per node, node after node
-using Eight = std::array<double, 8>;  ///< of one unknown the numbers of eight vectors
+using Vector = Eigen::VectorXd;                                   ///< 3 numbers per node, node after node
+using Eight = std::array<double, 8>;                              ///< of one unknown the numbers of eight vectors
+using Wide = double __attribute__((vector_size(sizeof(Eight))));  ///< the same in a register
 
 /// Which nodes share an element. Symmetric, sorted, diagonal included.
 struct Pattern {
@@ -52,12 +53,11 @@ struct BlockMatrix {
 void multiply(const BlockMatrix& A, const Vector& x, Vector& y);
 /// The rows of nodes [first, last) alone; y has its size already.
 void multiply(const BlockMatrix& A, int first, int last, const Vector& x, Vector& y);
-/// y = s A x.
+/// y = s A x; and of eight vectors, where Y has the size of X.
 void multiply(const ScalarMatrix& A, const Vector& x, Vector& y, double s = 1);
+void multiply(const ScalarMatrix& A, const std::vector<Eight>& X, std::vector<Eight>& Y, double s);
 /// The rows of nodes [first, last) alone; y has its size already.
 void multiply(const ScalarMatrix& A, int first, int last, const Vector& x, Vector& y, double s);
-/// The same of eight vectors; Y has the size of X.
-void multiply(const ScalarMatrix& A, const std::vector<Eight>& X, std::vector<Eight>& Y, double s = 1);
 
 /// A += s M on every block's diagonal.
 void add(BlockMatrix& A, double s, const ScalarMatrix& M);

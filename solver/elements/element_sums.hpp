@@ -213,15 +213,6 @@ Assembled add_chunks(const std::vector<std::vector<Chunk>>& colours, const Add& 
   return sum;
 }
 
-/// Calls body(batch) for every batch, chunk by chunk as above.
-template <class Body>
-void for_batches(const std::vector<std::vector<Chunk>>& colours, const Body& body) {
-  for (const auto& chunks : colours)
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
-      for (int b = chunks[c].first; b < chunks[c].last; ++b) body(static_cast<std::size_t>(b));
-    });
-}
-
 /// The same with add(batch) for every batch.
 template <class Add>
 Assembled add_by_colour(const std::vector<std::vector<Chunk>>& colours, const Add& add) {
@@ -230,6 +221,15 @@ Assembled add_by_colour(const std::vector<std::vector<Chunk>>& colours, const Ad
     for (int b = chunk.first; b < chunk.last; ++b) merge(part, add(static_cast<std::size_t>(b)));
     return part;
   });
+}
+
+/// Calls body(batch) for every batch, in the same order.
+template <class Body>
+void for_batches(const std::vector<std::vector<Chunk>>& colours, const Body& body) {
+  for (const auto& chunks : colours)
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t c) {
+      for (int b = chunks[c].first; b < chunks[c].last; ++b) body(static_cast<std::size_t>(b));
+    });
 }
 
 }  // namespace msml::fe

@@ -46,13 +46,6 @@ constexpr std::array<GradientProduct, 160> make_products() {
 
 }  // namespace detail
 
-/// Sets G at mid nodes from that of the corners.
-template <class T>
-void set_mid_gradients(T (&G)[10][3]) {
-  for (std::size_t k = 0; k < 6; ++k)
-    for (int i = 0; i < 3; ++i) G[4 + k][i] = G[Tetrahedron<10>::edges[k][0]][i] + G[Tetrahedron<10>::edges[k][1]][i];
-}
-
 /// Of nodes a and b at 16 a + b.
 inline constexpr std::array<GradientProduct, 160> gradient_products = detail::make_products();
 

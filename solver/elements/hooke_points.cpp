@@ -57,8 +57,9 @@ void make_stiffness(const HookePoint& all, Lanes (&block)[55][9]) {
   for (int i = 0; i < 3; ++i) {
     for (int c = 0; c < 3; ++c) G[c + 1][i] = all.inverse[3 * c + i];
     G[0][i] = -(G[1][i] + G[2][i] + G[3][i]);
+    for (std::size_t k = 0; k < 6; ++k)
+      G[4 + k][i] = G[Tetrahedron<10>::edges[k][0]][i] + G[Tetrahedron<10>::edges[k][1]][i];
   }
-  set_mid_gradients(G);
   for (int b = 0; b < 10; ++b)
     for (int a = 0; a <= b; ++a) {
       const GradientProduct& product = gradient_products[static_cast<std::size_t>(16 * a + b)];

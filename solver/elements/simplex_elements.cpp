@@ -214,20 +214,29 @@ bool SimplexElements<dimension, nodes, count>::all_rotated(Want want) const {
 }
 
 template <int dimension, int nodes, int count>
+template <class Keep>
 Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u, Want want, Vector& force,
-                                                                BlockMatrix& matrix) const {
-  if (!rows_) rows_.emplace(pattern_, positions_of_blocks(batches_));
+                                                                const Keep& keep) const {
   const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
     laws.laws.front()->evaluate_rotated(want, gradients, responses);
   };
   const auto add = [&](const Batch& batch, const Gradients* H, const RotatedResponse* at, Notes& notes) {
     add_force(batch, H, at, force, notes);
+    keep(batch, at);
+  };
+  return add_strips<RotatedResponse>(u, false, evaluate, add);
+}
+
+template <int dimension, int nodes, int count>
+Assembled SimplexElements<dimension, nodes, count>::add_by_rows(const Vector& u, Want want, Vector& force,
+                                                                BlockMatrix& matrix) const {
+  if (!rows_) rows_.emplace(pattern_, positions_of_blocks(batches_));
+  const Assembled found = add_rotated(u, want, force, [&](const Batch& batch, const RotatedResponse* at) {
     ShapeGradients g;
     shape_gradients(batch, 0, g);
     if constexpr (dimension == 3 && nodes == 4)
       rows_->set(batch.first, batch.count, at->R, batch.points[0].weight * at->mu, at->lambda / at->mu, g.g);
-  };
-  const Assembled found = add_strips<RotatedResponse>(u, false, evaluate, add);
+  });
   rows_->sum(matrix);
   return found;
 }
@@ -235,20 +244,14 @@ Assembled SimplexElements<dimension, nodes, count>::add_rotated(const Vector& u,
 template <int dimension, int nodes, int count>
 Assembled SimplexElements<dimension, nodes, count>::add_kept(const Vector& u, Vector& force) const {
   kept_->begin(u);
-  const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
-    laws.laws.front()->evaluate_rotated(Want::single_tangent, gradients, responses);
-  };
-  const auto add = [&](const Batch& batch, const Gradients* H, const RotatedResponse* at, Notes& notes) {
-    add_force(batch, H, at, force, notes);
+  return add_rotated(u, Want::single_tangent, force, [&](const Batch& batch, const RotatedResponse* at) {
     if constexpr (keeps)
-      for (int q = 0; q < count; ++q) {
+      for (std::size_t q = 0; q < count; ++q) {
         HookePoint point{.inverse = {}, .weight = batch.points[q].weight * at[q].mu, .ratio = at[q].lambda / at[q].mu};
-        std::copy_n(batch.inverse(q), 9, point.inverse);
-        kept_->at(static_cast<std::size_t>(&batch - batches_.data()))[static_cast<std::size_t>(q)] =
-            point.turned(at[q].R);
+        std::copy_n(batch.inverse(static_cast<int>(q)), 9, point.inverse);
+        kept_->at(static_cast<std::size_t>(&batch - batches_.data()))[q] = point.turned(at[q].R);
       }
-  };
-  return add_strips<RotatedResponse>(u, false, evaluate, add);
+  });
 }
 
 template <int dimension, int nodes, int count>
@@ -257,7 +260,7 @@ Assembled SimplexElements<dimension, nodes, count>::add_internal(const Vector& u
   matrices_ += matrix != nullptr;
   if (kept_ && want == Want::single_tangent && !matrix) return add_kept(u, force);
   if (nodes == 4 && matrix && matrices_ > matrices_before_rows && rotated_[static_cast<std::size_t>(want)])
-    return add_rotated(u, want, force, *matrix);
+    return add_by_rows(u, want, force, *matrix);
   if (matrix) matrix->set_zero();
   const auto evaluate = [&](const BatchLaws& laws, auto gradients, auto responses) {
     laws.evaluate(want, gradients, responses);

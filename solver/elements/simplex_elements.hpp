@@ -55,7 +55,10 @@ class SimplexElements final : public Elements {
   void add_force(const Batch& batch, const Gradients* H, const Response* response, Vector& force, Notes& notes) const;
   void add_tangent(const Batch& batch, const Response* response, BlockMatrix& matrix) const;
   bool all_rotated(Want want) const;
-  Assembled add_rotated(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
+  /// The forces; and calls keep(batch, responses), from which tangents are made.
+  template <class Keep>
+  Assembled add_rotated(const Vector& u, Want want, Vector& force, const Keep& keep) const;
+  Assembled add_by_rows(const Vector& u, Want want, Vector& force, BlockMatrix& matrix) const;
   Assembled add_kept(const Vector& u, Vector& force) const;
 
   Numbering numbering_;

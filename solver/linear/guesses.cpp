@@ -15,8 +15,6 @@ namespace {
 
 constexpr int piece = 256;  // rows of one sum
 
-using Wide = double __attribute__((vector_size(sizeof(Eight))));
-
 Wide wide(const Eight& from) {
   Wide values;
   std::memcpy(&values, &from, sizeof values);
@@ -135,7 +133,7 @@ void Guesses::keep(const Vector& x) {
   if (!std::exchange(started_, false)) return;
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, span_.size(), 4096), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k) {
-      Group& group = span_[k];
+      Eight& group = span_[k];
       for (std::size_t j = group.size() - 1; j > 1; --j) group[j] = group[j - 1];
       group[1] = x[static_cast<Eigen::Index>(k)];
     }

@@ -22,13 +22,11 @@ class Guesses {
   void start(const SystemMatrix& A, const Mask& fixed, const Vector& b, Vector& r, Vector& x);
   /// The solution of the system that start() was called for: kept if something was expected of it.
   void keep(const Vector& x);
-  std::size_t bytes() const { return (span_.size() + image_.size()) * sizeof(Group) + fe::bytes(likely_); }
+  std::size_t bytes() const { return (span_.size() + image_.size()) * sizeof(Eight) + fe::bytes(likely_); }
 
  private:
-  using Group = Eight;  ///< of one unknown: the expected vector, then solutions from new to old
-
   Vector likely_;
-  std::vector<Group> span_, image_;  ///< and A times these
+  std::vector<Eight> span_, image_;  ///< the expected vector, then solutions from new to old; and A times these
   bool started_ = false;
 };
 

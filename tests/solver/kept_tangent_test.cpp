@@ -71,7 +71,7 @@ Model halves(Formulation formulation) {
   return model;
 }
 
-/// The same with mid nodes that lie off the middles of their edges by up to ten times `off`.
+/// The same with mid nodes that lie off the middles of their edges by some tens of times `off`.
 Model curved(Formulation formulation, double off) {
   Model model = halves(formulation);
   Mesh mesh = *model.mesh;
@@ -110,7 +110,7 @@ TEST_P(KeptTangent, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(product(1), product(2));
 }
 
-// Elements with one rotation turn the stiffness at rest where edges are curved, be it by 1e-11.
+// Elements with one rotation turn the stiffness at rest where edges are curved, however little.
 TEST(SingleRotation, KeepsTheStiffnessAtRestTurned) {
   const Both both(halves(Formulation::single_rotation));
   Equations equations(curved(Formulation::single_rotation, 1e-12));

@@ -22,7 +22,7 @@ namespace msml::fe {
 /// changes the volume, which is stiff, and what does not change it they cannot make. There mid nodes take from all
 /// corners around them, prolongations lower their energy by a few steps, smoothers reach further down, and grids of
 /// groups visit the next one twice (a W cycle). Conjugate gradients then need at most 40 iterations to 1e-8 at
-/// nu = 0.49, on beams from 10^4 to 10^6 unknowns (40 at 5x10^6).
+/// nu = 0.49, on beams from 10^4 to 5x10^6 unknowns.
 class Multigrid {
  public:
   /// `pulse` is called while grids are set up; an exception of its own ends the set-up.
